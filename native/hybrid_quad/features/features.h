@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/mesh/triangle_mesh.h"
+
+namespace hybrid_quad {
+
+/// A polyline of mesh edges between two nodes of the feature graph, or a closed loop without a node.
+struct FeatureCurve {
+  std::vector<int> vertices;  ///< in order; a closed curve repeats its first vertex at the end
+  bool closed = false;        ///< no node on it (a loop through one node is not `closed`: it starts and ends at that node)
+  bool boundary = false;      ///< runs along the surface's boundary
+};
+
+/// Feature and boundary edges of a mesh, as curves between corners (paper 2.5, 3.2; MATH #9).
+struct FeatureGraph {
+  std::vector<FeatureCurve> curves;
+  std::vector<int> halfedge_curve;  ///< 3 #F: the curve a half-edge lies on, or -1; the same on both sides of an edge
+  std::vector<char> is_corner;      ///< #V: node of degree != 2 (dangling ends too), or the curve turns by more than 80 degrees
+  std::vector<char> on_feature;     ///< #V
+  std::vector<int> face_region;     ///< #F: connected region of faces between feature curves
+
+  bool is_feature(int h) const { return halfedge_curve[h] >= 0; }
+};
+
+struct FeatureOptions {
+  double sharp_angle = 40.0;     ///< degrees between face normals; > 180 (or use_sharp_angle false) takes none
+  bool use_sharp_angle = true;
+  double weak_angle = 20.0;      ///< hysteresis: a chain of weaker edges is kept where it joins strong ones
+  double minimum_length = 0.0;   ///< drop connected sets of interior angle features shorter than this (scene units)
+  double corner_angle = 100.0;   ///< degrees between consecutive edges of a curve below which its vertex is a corner
+  std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped
+};
+
+/// Boundary edges, edges by angle and marked edges, traced into curves.
+/// \throws InputError "unknown_edge" if a marked pair is no edge of the mesh
+FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& options, const RunContext& context);
+
+/// Curves, corners and regions of a given set of feature half-edges. \param is_feature 3 #F, symmetric; boundary is added
+FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle);
+
+std::vector<std::string> violations_of(const FeatureGraph& features, const TriangleMesh& mesh);
+
+}  // namespace hybrid_quad

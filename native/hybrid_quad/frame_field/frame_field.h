@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hybrid_quad/working_surface/working_surface.h"
+
+namespace hybrid_quad {
+
+/// One frame per face, given by the rows of F^{-1}: an edge e of face f measures (du[f] . e, dv[f] . e) quads. Frames
+/// are combed: matchings are 0 across a spanning tree of the dual graph.
+struct FrameField {
+  std::vector<Vector3> du, dv;          ///< #F, in the face's plane, det > 0 (du x dv along the normal); 1 / scene units
+  std::vector<std::uint8_t> matching;   ///< 3 #F: (u, v) in the gauge of opposite(h)'s face = turned((u, v) in h's face, matching[h])
+  std::vector<std::int8_t> cone_index;  ///< #V, quarters of a turn: +1 where three quads meet, -1 where five do; 0 on features
+
+  /// (du, dv) along half-edge h, measured in the frame of its face.
+  Vector2 grid_vector(const TriangleMesh& mesh, int h) const {
+    const Vector3 e = mesh.edge_vector(h);
+    return {du[h / 3].dot(e), dv[h / 3].dot(e)};
+  }
+  int cone_count() const {
+    int n = 0;
+    for (const auto c : cone_index) n += c != 0;
+    return n;
+  }
+};
+
+struct FrameFieldOptions {
+  int sweeps = 10;         ///< relaxation sweeps a level
+  int coarsest = 300;      ///< unknowns of the level that is solved directly
+};
+
+/// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1), solved
+/// by multilevel relaxation of z = e^{4 i theta} on faces with the Levi-Civita connection.
+/// \post sum of cone indices and of the features' turning agrees with the Euler characteristic (Poincare-Hopf)
+FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context);
+
+/// Matchings, combing and cone indices of given frames (rows du, dv per face).
+FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vector3> du, std::vector<Vector3> dv);
+
+std::vector<std::string> violations_of(const FrameField& field, const WorkingSurface& surface);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/features/features.h"
+#include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/mesh/surface_index.h"
+
+namespace hybrid_quad {
+
+struct ImproveOptions {
+  bool edit_connectivity = true;   ///< valence moves, chain repair, wedge templates
+  int smoothing_sweeps = 20;
+  double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
+  bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
+  double target_length = 0;        ///< mean quad edge, 0 = measured
+};
+
+struct ImproveReport {
+  int connectivity_moves = 0;
+  int inverted_before = 0, inverted_after = 0;
+  int refined_quads = 0;           ///< quads added where the surface folds below the quad size
+};
+
+/// Makes the quads good without leaving the surface: connectivity moves that lower the valence cost, then smoothing and
+/// untangling (regularised corner energy) with vertices on the input surface, curve vertices on their curves and corners
+/// fixed. Never makes a valid mesh invalid (checked move by move).
+ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
+                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context);
+
+}  // namespace hybrid_quad

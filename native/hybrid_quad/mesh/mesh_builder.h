@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hybrid_quad/mesh/triangle_mesh.h"
+
+namespace hybrid_quad {
+
+/// Raw polygons as they come from a file or a Blender mesh.
+struct PolygonSoup {
+  std::vector<Vector3> positions;
+  std::vector<int> face_sizes;     ///< corners of each polygon
+  std::vector<int> face_vertices;  ///< the polygons' vertices, one polygon after the other
+};
+
+/// One kind of defect, with the input elements that show it.
+struct Defect {
+  std::string code;          ///< e.g. "non_manifold_edge", "flipped_face", "duplicate_face", "zero_area_face", "isolated_vertex", "non_finite_vertex"
+  std::string element_kind;  ///< "vertex", "edge" (elements are then vertex pairs, flattened) or "face"
+  std::vector<int> elements;
+  bool repairable = false;
+  std::string remedy;        ///< what remesh does about it, or what the user can do
+};
+
+/// The clean mesh and how it relates to the input.
+struct BuiltMesh {
+  TriangleMesh mesh;
+  std::vector<int> input_vertex;  ///< #V: polygon-soup vertex it came from
+  std::vector<int> input_face;    ///< #F: polygon it is part of
+  std::vector<Defect> defects;    ///< what was found, and repaired, on the way
+};
+
+/// Finds defects without changing anything.
+std::vector<Defect> check_mesh(const PolygonSoup& soup);
+
+/// Triangulates polygons (ear clipping in their best plane), drops what has no area, welds exact coincidences where that closes cracks,
+/// orients faces consistently, splits non-manifold edges and vertices into manifold sheets.
+/// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...
+BuiltMesh build_mesh(const PolygonSoup& soup);
+
+}  // namespace hybrid_quad

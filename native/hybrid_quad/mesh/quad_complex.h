@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/mesh/quad_mesh.h"
+
+namespace hybrid_quad {
+
+/// A 2-manifold complex of quadrilaterals whose edges are darts, never vertex pairs: dart d = 4 q + i runs along side i
+/// of quad q from corner i to corner i + 1. Always manifold by construction (GUARANTEE 1), whatever an indexed mesh could
+/// hold: faces may meet themselves, share two edges, and vertices may have any valence.
+struct QuadComplex {
+  std::vector<int> opposite;        ///< 4 #Q: the dart on the other side, -1 on the boundary
+  std::vector<int> vertex;          ///< 4 #Q: origin of the dart
+  std::vector<int> curve;           ///< 4 #Q: feature curve the side lies on, or -1 (same on both sides)
+  std::vector<Vector3> positions;   ///< #V
+  std::vector<VertexKind> kind;     ///< #V
+  std::vector<int> anchor;          ///< #V, as in QuadMesh
+
+  int quad_count() const { return static_cast<int>(opposite.size()) / 4; }
+  static int next(int d) { return (d & ~3) | ((d + 1) & 3); }
+  static int previous(int d) { return (d & ~3) | ((d + 3) & 3); }
+  int from(int d) const { return vertex[d]; }
+  int to(int d) const { return vertex[next(d)]; }
+};
+
+/// Gluing is an involution, sides agree on vertices and curves, every vertex id is one orbit.
+std::vector<std::string> violations_of(const QuadComplex& complex);
+
+struct ComplexRepairReport {
+  int cancelled_singlets = 0;   ///< faces removed at vertices of valence 1
+  int merged_doublets = 0;      ///< pairs of faces merged at vertices of valence 2
+  int split_polychords = 0;     ///< dual strips doubled to make room
+  int collapsed_polychords = 0;
+};
+
+/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes valence 1 and 2, then splits
+/// polychords through double edges, self-adjacent faces and loops shorter than three edges until none is left. Topology,
+/// feature chains and corners stay.
+/// \throws InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
+ComplexRepairReport repair_complex(QuadComplex& complex);
+
+/// \pre no violation an indexed mesh could not hold (repair_complex)
+QuadMesh to_quad_mesh(const QuadComplex& complex);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hybrid_quad/mesh/triangle_mesh.h"
+
+namespace hybrid_quad {
+
+/// A point of a triangle mesh.
+struct SurfacePoint {
+  int face = -1;
+  Vector3 position = Vector3::Zero();
+  double squared_distance = 0;
+};
+
+/// Nearest points of a triangle mesh: a bounding-volume tree with an optional filter by region and by normal.
+class SurfaceIndex {
+ public:
+  /// \param face_region  #F, may be empty (no filter by region)
+  SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region);
+  ~SurfaceIndex();
+  SurfaceIndex(SurfaceIndex&&) noexcept;
+  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
+
+  struct Filter {
+    int region = -1;                       ///< only faces of this region; -1 = any
+    Vector3 normal = Vector3::Zero();      ///< with min_cosine > -1: only faces whose normal agrees
+    double min_cosine = -2;
+    int hint = -1;                         ///< a face near the answer: a first bound by walking
+  };
+  /// The nearest point among faces that pass the filter; face = -1 if none does.
+  SurfacePoint nearest(const Vector3& p, const Filter& filter) const;
+  SurfacePoint nearest(const Vector3& p) const { return nearest(p, Filter{}); }
+  /// The nearest point found by walking from face `start` downhill over neighbours, never across a region's border.
+  SurfacePoint walk(const Vector3& p, int start) const;
+
+  const TriangleMesh& mesh() const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// The point of triangle (a, b, c) nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
+Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c);
+
+}  // namespace hybrid_quad

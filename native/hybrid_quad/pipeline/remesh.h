@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/mesh/mesh_builder.h"
+#include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/periodic_field/periodic_field.h"
+
+namespace hybrid_quad {
+
+struct RemeshOptions {
+  int quads = 5000;                ///< asked number of quads (ignored where edge_length > 0)
+  double edge_length = 0;          ///< asked quad edge length (scene units)
+  bool use_sharp_angle = true;
+  double sharp_angle = 40;         ///< degrees between face normals that make a feature edge
+  std::vector<std::array<int, 2>> marked_edges;  ///< pairs of input vertices that are features whatever their angle
+  PeriodicSolver solver = PeriodicSolver::kMultilevel;
+  bool improve = true;
+  bool fit = true;                 ///< let free vertices leave the surface a little so that the quads' faces lie nearer to it
+};
+
+struct StageRecord {
+  std::string name;
+  double seconds = 0;
+  double peak_mb = 0;  ///< peak resident memory of the process at the end of the stage
+};
+
+/// How the singular patches were filled.
+struct PatchRecord {
+  int count = 0;
+  int morse_smale = 0;
+  int combinatorial = 0;
+  double combinatorial_area_fraction = 0;
+};
+
+struct RemeshReport {
+  int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
+  int quads = 0, vertices = 0;
+  int irregular_vertices = 0;            ///< interior vertices of valence != 4
+  int field_singularities = 0;
+  int dislocations = 0;                  ///< left after cancellation
+  int dislocations_found = 0;
+  double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
+  PatchRecord patches;
+  double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
+  double hausdorff_percent = 0, mean_distance_percent = 0;
+  double feature_hausdorff_percent = 0;  ///< 0 without features
+  std::vector<StageRecord> stages;       ///< summed over components and passes
+  std::vector<std::string> warnings;
+  std::vector<Defect> defects;           ///< of the input, repaired on the way
+};
+
+struct RemeshResult {
+  QuadMesh mesh;
+  RemeshReport report;
+};
+
+/// The whole method: any polygon soup that is a surface in, a valid pure-quad mesh of the same topology out.
+/// \throws InputError if the input is no surface (names the elements); Cancelled; InternalError (a bug)
+RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context);
+
+}  // namespace hybrid_quad

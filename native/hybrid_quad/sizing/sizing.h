@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/frame_field/frame_field.h"
+
+namespace hybrid_quad {
+
+struct SizingOptions {
+  bool conformal = false;           ///< first scale by the conformal factor that makes the field integrable
+  double conformal_clip = 2.0;      ///< bound of that factor, both ways
+  bool correct_curl = true;         ///< 4-parameter curl correction of MATH 7
+  double curl_weight = 1e-5;        ///< lambda: small = integrable frames, large = the asked frames
+  double feature_weight = 30.0;     ///< keeps features isolines during the correction
+};
+
+struct SizedFrames {
+  FrameField field;
+  double mean_correction = 0;  ///< rms |X - I| over the area
+  int flipped_faces = 0;       ///< faces whose corrected frame had det <= 0.2 and was put back
+};
+
+/// Scales the unit frames to the surface's target lengths, corrects their curl, and rescales so that the area measured
+/// in quads is what was asked (integral of 1 / h^2).
+/// \param quads_asked  number of quads the whole surface should get; <= 0: from target lengths
+SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_frames, double quads_asked,
+                         const SizingOptions& options, const RunContext& context);
+
+}  // namespace hybrid_quad
