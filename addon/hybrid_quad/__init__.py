@@ -1,0 +1,75 @@
+"""Pure-quad remeshing of surface meshes (Morse-parameterization hybridization, Fang et al. 2018).
+
+``import hybrid_quad`` needs numpy and nothing of Blender; Blender loads the same folder as an add-on and calls
+:func:`register`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .core.errors import Cancelled, InputError, InternalError
+
+if TYPE_CHECKING:
+    from .core.check import Defect, check
+    from .core.options import RemeshOptions
+    from .core.remesh import RemeshResult, remesh
+
+bl_info = {
+    "name": "Hybrid Quad",
+    "author": "Hybrid Quad contributors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "View3D > Sidebar > Hybrid Quad",
+    "description": "Turns any surface mesh into pure quads that follow its features",
+    "category": "Mesh",
+}
+
+__version__ = ".".join(str(part) for part in bl_info["version"])
+
+__all__ = [
+    "Cancelled",
+    "Defect",
+    "InputError",
+    "InternalError",
+    "RemeshOptions",
+    "RemeshResult",
+    "check",
+    "remesh",
+]
+
+# Names that need numpy or the compiled module are loaded on first use, so that Blender can register the add-on, and
+# say what is missing, where one of them is not there.
+_MODULE_OF = {
+    "Defect": "check",
+    "check": "check",
+    "RemeshOptions": "options",
+    "RemeshResult": "remesh",
+    "remesh": "remesh",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(f"{__name__}.core.{_MODULE_OF[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def register() -> None:
+    """Called by Blender when the add-on is enabled."""
+    from .blender import registration
+
+    registration.register()
+
+
+def unregister() -> None:
+    """Called by Blender when the add-on is disabled."""
+    from .blender import registration
+
+    registration.unregister()
