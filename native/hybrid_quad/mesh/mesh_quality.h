@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/features/features.h"
+#include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/mesh/surface_index.h"
+
+namespace hybrid_quad {
+
+/// Scaled Jacobian of a quad: the smallest over its corners of the sine of the corner's angle, signed by the quad's own
+/// normal (Knupp 2000). In [-1, 1]; -1 for a quad without area.
+double scaled_jacobian(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
+
+struct ShapeQuality {
+  double scaled_jacobian_mean = 0;
+  double scaled_jacobian_p1 = 0;  ///< first percentile (linear interpolation)
+  double scaled_jacobian_min = 0;
+  int below_zero = 0;             ///< quads with scaled Jacobian <= 0
+  int irregular_vertices = 0;     ///< interior vertices of valence != 4
+};
+
+ShapeQuality shape_quality(const QuadMesh& mesh);
+
+/// Quads that point against the surface: against its nearest point and against all of it within a third of the quad's
+/// mean edge length beyond that, so that the far side of a thin sheet does not count. Ascending.
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface);
+
+/// Distances in percent of the diagonal of the input's bounding box.
+struct SurfaceDistance {
+  double quads_to_input_max = 0;
+  double input_to_quads_max = 0;
+  double mean = 0;  ///< mean of the two directions' means
+  double hausdorff() const { return quads_to_input_max > input_to_quads_max ? quads_to_input_max : input_to_quads_max; }
+};
+
+/// Symmetric distance between the quads (each split along its first diagonal) and the input, from evenly spread samples
+/// and the vertices of both. The same for any number of threads.
+/// \pre `quads` is valid (violations_of)
+SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context,
+                                 int samples = 40000);
+
+/// Largest distance from the input's feature curves to the quads' feature edges, in percent of the diagonal; 0 without
+/// feature curves, 100 where there are curves but no feature edges.
+double feature_distance(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
+                        const RunContext& context);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/mesh/segment_index.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+/// n x n squares over [0, 1]^2 at height z.
+QuadMesh square_grid(int n, double z) {
+  QuadMesh mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      mesh.positions.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n, z);
+      mesh.kind.push_back(VertexKind::kFree);
+      mesh.anchor.push_back(0);
+    }
+  const auto id = [n](int i, int j) { return j * (n + 1) + i; };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) mesh.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+  return mesh;
+}
+
+TEST(ScaledJacobian, KnownQuads) {
+  const Vector3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0);
+  EXPECT_DOUBLE_EQ(scaled_jacobian(a, b, c, d), 1.0);
+  EXPECT_NEAR(scaled_jacobian(a, 5 * b, Vector3(5, 1, 0), d), 1.0, 1e-15);
+  const double angle = 60 * M_PI / 180;
+  const Vector3 shear(std::cos(angle), std::sin(angle), 0);
+  EXPECT_NEAR(scaled_jacobian(a, b, b + shear, shear), std::sin(angle), 1e-15);
+  EXPECT_LT(scaled_jacobian(a, b, Vector3(0.2, 0.2, 0), d), 0.0) << "a corner of more than 180 degrees";
+  EXPECT_DOUBLE_EQ(scaled_jacobian(a, a, a, a), -1.0);
+}
+
+TEST(ShapeQuality, RegularGridIsPerfect) {
+  const ShapeQuality quality = shape_quality(square_grid(5, 0));
+  EXPECT_NEAR(quality.scaled_jacobian_mean, 1.0, 1e-12);
+  EXPECT_NEAR(quality.scaled_jacobian_min, 1.0, 1e-12);
+  EXPECT_EQ(quality.below_zero, 0);
+  EXPECT_EQ(quality.irregular_vertices, 0);
+}
+
+TEST(ShapeQuality, PercentileInterpolatesLikeNumpy) {
+  QuadMesh mesh = square_grid(10, 0);
+  mesh.positions[5 * 11 + 5] += Vector3(0.03, 0.03, 0);  // four quads change, the rest stay at one
+  const ShapeQuality quality = shape_quality(mesh);
+  EXPECT_GT(quality.scaled_jacobian_p1, quality.scaled_jacobian_min);
+  EXPECT_LT(quality.scaled_jacobian_p1, 1.0);
+}
+
+TEST(InvertedQuads, FlippedQuadIsFoundAndThinSheetIsNot) {
+  const TriangleMesh plate = test::box(4, Vector3(1, 1, 0.001));
+  const SurfaceIndex index(plate, {});
+  QuadMesh mesh = square_grid(4, 0.001);
+  EXPECT_TRUE(inverted_quads(mesh, index).empty());
+  for (auto& p : mesh.positions) p.z() = 0.0004;  // now nearer to the lower side, which looks the other way
+  EXPECT_TRUE(inverted_quads(mesh, index).empty());
+  const TriangleMesh sheet = test::flat_grid(4, 4);
+  const SurfaceIndex one_side(sheet, {});
+  std::swap(mesh.quads[3][1], mesh.quads[3][3]);
+  EXPECT_EQ(inverted_quads(mesh, one_side), std::vector<int>{3});
+}
+
+TEST(SurfaceDistance, ParallelSheets) {
+  const TriangleMesh sheet = test::flat_grid(6, 6);
+  const SurfaceIndex index(sheet, {});
+  RunContext context;
+  const SurfaceDistance distance = surface_distance(square_grid(3, 0.1), index, context);
+  const double expected = 100 * 0.1 / std::sqrt(2.0);
+  EXPECT_NEAR(distance.mean, expected, 1e-9);
+  EXPECT_NEAR(distance.hausdorff(), expected, 1e-9);
+  const SurfaceDistance zero = surface_distance(square_grid(3, 0), index, context);
+  EXPECT_NEAR(zero.hausdorff(), 0.0, 1e-12);
+}
+
+TEST(SurfaceDistance, SameForAnyNumberOfThreads) {
+  const TriangleMesh sphere = test::icosphere(4);
+  const SurfaceIndex index(sphere, {});
+  QuadMesh mesh = square_grid(12, 0.3);
+  RunContext context;
+  const SurfaceDistance one = surface_distance(mesh, index, context, 20000);
+  for (const int threads : {2, 3, 4}) {
+    context.threads = threads;
+    const SurfaceDistance many = surface_distance(mesh, index, context, 20000);
+    EXPECT_EQ(one.mean, many.mean);
+    EXPECT_EQ(one.quads_to_input_max, many.quads_to_input_max);
+    EXPECT_EQ(one.input_to_quads_max, many.input_to_quads_max);
+  }
+}
+
+TEST(SurfaceDistance, TwoQuadsMayShareADiagonal) {
+  // Vertex pairs alone would glue the wrong triangles here.
+  QuadMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.3}, {0, 1, 0}, {0.2, 0.9, 0.2}, {0.9, 0.2, 0.4}};
+  mesh.quads = {{0, 1, 2, 3}, {0, 3, 2, 4}, {0, 4, 2, 5}, {0, 5, 2, 1}};
+  mesh.kind.assign(6, VertexKind::kFree);
+  mesh.anchor.assign(6, 0);
+  const TriangleMesh sheet = test::flat_grid(2, 2);
+  const SurfaceIndex index(sheet, {});
+  EXPECT_NO_THROW(surface_distance(mesh, index, RunContext{}, 1000));
+}
+
+TEST(FeatureDistance, BoundaryOfASquare) {
+  const TriangleMesh sheet = test::flat_grid(4, 4);
+  const FeatureGraph features = trace_features(sheet, std::vector<char>(sheet.halfedge_count(), 0), 100);
+  QuadMesh mesh = square_grid(4, 0);
+  EXPECT_EQ(feature_distance(mesh, sheet, features, RunContext{}), 100.0);
+  for (int i = 0; i < 4; ++i) {
+    mesh.feature_edges.push_back({i, i + 1, 0});
+    mesh.feature_edges.push_back({20 + i + 1, 20 + i, 0});
+    mesh.feature_edges.push_back({5 * (i + 1), 5 * i, 0});
+    mesh.feature_edges.push_back({5 * i + 4, 5 * i + 9, 0});
+  }
+  EXPECT_NEAR(feature_distance(mesh, sheet, features, RunContext{}), 0.0, 1e-9);
+  mesh.positions[2].y() += 0.1;
+  EXPECT_NEAR(feature_distance(mesh, sheet, features, RunContext{}), 100 * 0.1 / std::sqrt(2.0), 0.5);
+}
+
+TEST(SegmentIndex, AgreesWithTryingAll) {
+  std::vector<std::array<Vector3, 2>> segments;
+  for (int i = 0; i < 300; ++i) {
+    const double t = 0.1 * i;
+    segments.push_back({Vector3(std::cos(t), std::sin(2 * t), 0.01 * t), Vector3(std::cos(t + 0.1), std::sin(2 * t + 0.2), 0.01 * t)});
+  }
+  segments.push_back({Vector3::Zero(), Vector3::Zero()});
+  const SegmentIndex index(segments);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 p(std::sin(3.1 * i), std::cos(1.7 * i), std::sin(0.3 * i));
+    double least = 1e300;
+    for (const auto& s : segments) {
+      const Vector3 d = s[1] - s[0];
+      const double t = d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, (p - s[0]).dot(d) / d.squaredNorm())) : 0.0;
+      least = std::min(least, (s[0] + t * d - p).squaredNorm());
+    }
+    EXPECT_NEAR(index.nearest(p).squared_distance, least, 1e-15);
+  }
+  EXPECT_EQ(SegmentIndex({}).nearest(Vector3::Zero()).segment, -1);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
