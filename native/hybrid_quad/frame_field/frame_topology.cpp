@@ -1,0 +1,72 @@
+#include "hybrid_quad/frame_field/frame_topology.h"
+
+#include <cmath>
+
+#include "hybrid_quad/grid_algebra/quarter_turn.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kQuarter = kPi / 2;
+
+int nearest_quarters(double angle) { return static_cast<int>(std::lround(angle / kQuarter)); }
+
+/// Angle from the nearest axis of the frame to half-edge h.
+double deviation_from_axis(const FaceAngles& angles, const std::vector<double>& directions, int h) {
+  const double angle = angles.direction(h) - directions[h / 3];
+  return angle - nearest_quarters(angle) * kQuarter;
+}
+
+}  // namespace
+
+std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv) {
+  std::vector<double> directions(mesh.face_count(), 0);
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const FaceBasis basis = face_basis(mesh, f);
+    // The rotation nearest to a matrix of positive determinant: its conformal part, which cannot vanish.
+    const double cosine = du[f].dot(basis.along) + dv[f].dot(basis.across);
+    const double sine = du[f].dot(basis.across) - dv[f].dot(basis.along);
+    const double angle = std::atan2(sine, cosine);
+    if (std::isfinite(angle)) directions[f] = angle;
+  }
+  return directions;
+}
+
+FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int h) {
+  const int o = mesh.opposite(h);
+  const double angle = directions[o / 3] - directions[h / 3] - angles.transport(h, o);
+  // Rounded from one side only: the two half-edges of an edge must not disagree where the turn is half a quarter.
+  if (h > o) {
+    const FrameTurn back = turn_across(mesh, angles, directions, o);
+    return {inverse_turns(back.quarters), -back.angle};
+  }
+  const int quarters = nearest_quarters(angle);
+  return {wrap_turns(quarters), angle - quarters * kQuarter};
+}
+
+int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v) {
+  const int first = mesh.outgoing(v);
+  if (first < 0) return 0;
+  double fan = 0, turning = 0;
+  int h = first, last = first;
+  do {
+    fan += angles.corner(h);
+    last = TriangleMesh::previous(h);
+    if (!mesh.is_boundary(last)) turning += turn_across(mesh, angles, directions, last).angle;
+    h = mesh.rotate_ccw(h);
+  } while (h >= 0 && h != first);
+  if (h >= 0) return nearest_quarters(2 * kPi - fan + turning);
+  const double sector =
+      fan - turning + deviation_from_axis(angles, directions, first) - deviation_from_axis(angles, directions, last);
+  return 2 - nearest_quarters(sector);
+}
+
+std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions) {
+  std::vector<int> quarters(mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) quarters[v] = quarters_at(mesh, angles, directions, v);
+  return quarters;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hybrid_quad/frame_field/face_angles.h"
+
+namespace hybrid_quad {
+
+/// How a frame turns from half-edge h's face to the opposite one: quarters that only rename its axes, and the rest.
+struct FrameTurn {
+  int quarters = 0;   ///< (u, v) over there = turned((u, v) here, quarters), wrapped to 0..3
+  double angle = 0;   ///< rotation of the frame as a cross, in [-pi/4, pi/4], counterclockwise
+};
+
+/// Direction of every frame's u axis, counterclockwise from its face's half-edge 0: the rotation nearest to the frame.
+/// Frames that say nothing (zero, not finite, orientation reversed) are taken along half-edge 0.
+std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
+
+/// \pre h is interior
+FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int h);
+
+/// Quarters of a turn that the field makes at vertex v. Interior: +1 where three quads meet, -1 where five do. Boundary:
+/// 2 minus the quads' corners there. 0 for an isolated vertex.
+int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v);
+
+/// Of every vertex; they sum to 4 times the Euler characteristic.
+std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions);
+
+}  // namespace hybrid_quad

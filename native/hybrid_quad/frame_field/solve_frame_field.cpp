@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/frame_field/cross_relaxation.h"
+#include "hybrid_quad/frame_field/frame_field.h"
+#include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/split_cones.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+/// The crosses of a surface as unknowns: z = e^{4 i angle}, the angle from each face's half-edge 0.
+struct CrossUnknowns {
+  std::vector<Complex> z;      ///< #F
+  std::vector<int> unknown;    ///< #F: index into the system, -1 for faces that a feature fixes
+  CrossSystem system;
+  std::vector<double> diffusion_mass;  ///< #unknowns: area over target length squared
+};
+
+/// Faces at features follow their longest feature edge.
+void fix_faces_at_features(const WorkingSurface& surface, const FaceAngles& angles, CrossUnknowns& cross) {
+  const TriangleMesh& mesh = surface.mesh;
+  cross.z.assign(mesh.face_count(), Complex(1, 0));
+  cross.unknown.assign(mesh.face_count(), 0);
+  int count = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    double longest = -1;
+    for (int h = 3 * f; h < 3 * f + 3; ++h) {
+      if (!surface.features.is_feature(h) && !mesh.is_boundary(h)) continue;
+      const double length = mesh.edge_length(h);
+      if (length <= longest) continue;
+      longest = length;
+      cross.z[f] = std::polar(1.0, 4 * angles.direction(h));
+    }
+    cross.unknown[f] = longest >= 0 ? -1 : count++;
+  }
+  cross.system.diagonal.assign(count, 0);
+  cross.system.source.assign(count, Complex(0, 0));
+}
+
+/// |edge| over |dual edge|, up to a factor; bounded, so that slivers neither decouple nor lock their neighbours.
+double link_stiffness(const WorkingSurface& surface, int h, double area_sum) {
+  constexpr double kStiffest = 1e3, kSoftest = 1e-3, kAcrossFeatures = 1e-3;
+  const double square = surface.mesh.edge_vector(h).squaredNorm();
+  double w = area_sum > 0 ? 3 * square / area_sum : kStiffest;
+  if (!(w < kStiffest)) w = kStiffest;
+  w = std::max(w, kSoftest);
+  return surface.features.is_feature(h) ? w * kAcrossFeatures : w;
+}
+
+CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles) {
+  const TriangleMesh& mesh = surface.mesh;
+  CrossUnknowns cross;
+  fix_faces_at_features(surface, angles, cross);
+  std::vector<double> area(mesh.face_count());
+  for (int f = 0; f < mesh.face_count(); ++f) area[f] = mesh.area(f);
+  CrossSystem& system = cross.system;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int o = mesh.opposite(h);
+    if (o < h) continue;
+    const int f = h / 3, g = o / 3, p = cross.unknown[f], q = cross.unknown[g];
+    if (p < 0 && q < 0) continue;
+    const double w = link_stiffness(surface, h, area[f] + area[g]);
+    const Complex carry = std::polar(w, 4 * angles.transport(h, o));  // z_g from z_f
+    if (p >= 0) system.diagonal[p] += w;
+    if (q >= 0) system.diagonal[q] += w;
+    if (p >= 0 && q >= 0) {
+      system.links.push_back(p < q ? CrossLink{p, q, carry} : CrossLink{q, p, std::conj(carry)});
+    } else if (p >= 0) {
+      system.source[p] += std::conj(carry) * cross.z[g];
+    } else {
+      system.source[q] += carry * cross.z[f];
+    }
+  }
+  cross.diffusion_mass.resize(system.size());
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (cross.unknown[f] >= 0) {
+      const double h = surface.target_length[f];
+      const double share = area[f] / (h * h);
+      cross.diffusion_mass[cross.unknown[f]] = std::isfinite(share) ? std::max(share, 1e-6) : 1e-6;
+    }
+  return cross;
+}
+
+std::vector<double> directions_of(const CrossUnknowns& cross, const std::vector<Complex>& solution) {
+  std::vector<double> directions(cross.z.size());
+  for (std::size_t f = 0; f < cross.z.size(); ++f)
+    directions[f] = std::arg(cross.unknown[f] < 0 ? cross.z[f] : solution[cross.unknown[f]]) / 4;
+  return directions;
+}
+
+}  // namespace
+
+FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
+  const TriangleMesh& mesh = surface.mesh;
+  const FaceAngles angles(mesh);
+  const CrossUnknowns cross = assemble_cross_system(surface, angles);
+  context.checkpoint(0.1);
+  std::vector<Complex> z = relax_cross_system(cross.system, {options.sweeps, options.coarsest}, context);
+  std::vector<double> mass(z.size());
+  for (const double time : options.diffusion_times) {
+    for (std::size_t i = 0; i < z.size(); ++i) mass[i] = 2 * cross.diffusion_mass[i] / time;
+    diffuse_cross_system(cross.system, mass, z, context);
+  }
+  std::vector<double> directions = directions_of(cross, z);
+  split_strong_cones(surface, angles, directions);
+
+  std::vector<Vector3> du(mesh.face_count()), dv(mesh.face_count());
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const FaceBasis basis = face_basis(mesh, f);
+    const double c = std::cos(directions[f]), s = std::sin(directions[f]);
+    du[f] = c * basis.along + s * basis.across;
+    dv[f] = c * basis.across - s * basis.along;
+  }
+  return frame_field_from_rows(surface, std::move(du), std::move(dv));
+}
+
+}  // namespace hybrid_quad
