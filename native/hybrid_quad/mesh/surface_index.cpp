@@ -1,0 +1,224 @@
+#include "hybrid_quad/mesh/surface_index.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace hybrid_quad {
+
+Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+  const auto nearest_on_segment = [&p](const Vector3& s, const Vector3& e) -> Vector3 {
+    const Vector3 d = e - s;
+    const double length2 = d.squaredNorm();
+    const double t = length2 > 0 ? std::clamp((p - s).dot(d) / length2, 0.0, 1.0) : 0.0;
+    return s + t * d;
+  };
+  const Vector3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vector3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return nearest_on_segment(a, b);
+  const Vector3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return nearest_on_segment(a, c);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return nearest_on_segment(b, c);
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) {  // a needle: rounding leaves no inside
+    Vector3 best = nearest_on_segment(a, b);
+    for (const Vector3& q : {nearest_on_segment(b, c), nearest_on_segment(c, a)})
+      if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+    return best;
+  }
+  return a + ab * (vb / sum) + ac * (vc / sum);
+}
+
+namespace {
+
+constexpr int kLeafFaces = 4;
+constexpr int kStackSize = 128;  // the tree is halved at every level, so its depth stays below 40
+
+struct Box {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
+  Vector3 high = Vector3::Constant(-std::numeric_limits<double>::infinity());
+  void add(const Box& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+  double squared_distance(const Vector3& p) const {
+    return ((low - p).cwiseMax(p - high)).cwiseMax(0.0).squaredNorm();
+  }
+};
+
+struct Node {
+  Box box;
+  int first = 0, count = 0;  ///< a leaf's range of `order`; count = 0: an inner node
+  int left = -1, right = -1;
+  int region = -1;           ///< the only region below, or -1 if there are several
+};
+
+}  // namespace
+
+struct SurfaceIndex::Tree {
+  TriangleMesh mesh;
+  std::vector<int> region;
+  std::vector<Vector3> normal;
+  std::vector<int> order;
+  std::vector<Node> nodes;
+
+  bool passes(int f, const Filter& filter) const {
+    if (filter.region >= 0 && !region.empty() && region[f] != filter.region) return false;
+    return filter.min_cosine <= -1 || normal[f].dot(filter.normal) >= filter.min_cosine;
+  }
+  Vector3 nearest_on_face(const Vector3& p, int f) const {
+    const auto& t = mesh.face(f);
+    return nearest_on_triangle(p, mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
+  }
+  /// Takes face f if it is nearer than what `best` holds.
+  bool take(const Vector3& p, int f, SurfacePoint& best) const {
+    const Vector3 q = nearest_on_face(p, f);
+    const double d = (q - p).squaredNorm();
+    if (!(d < best.squared_distance)) return false;
+    best = {f, q, d};
+    return true;
+  }
+  void build();
+};
+
+void SurfaceIndex::Tree::build() {
+  const int face_count = mesh.face_count();
+  std::vector<Box> boxes(face_count);
+  std::vector<Vector3> middle(face_count);
+  normal.resize(face_count);
+  order.resize(face_count);
+  for (int f = 0; f < face_count; ++f) {
+    for (const int v : mesh.face(f)) {
+      boxes[f].low = boxes[f].low.cwiseMin(mesh.position(v));
+      boxes[f].high = boxes[f].high.cwiseMax(mesh.position(v));
+    }
+    middle[f] = 0.5 * (boxes[f].low + boxes[f].high);
+    normal[f] = mesh.normal(f);
+    order[f] = f;
+  }
+  if (face_count == 0) return;
+
+  struct Task {
+    int node, begin, end;
+  };
+  std::vector<Task> tasks{{0, 0, face_count}};
+  nodes.resize(1);
+  while (!tasks.empty()) {
+    const Task task = tasks.back();
+    tasks.pop_back();
+    Box box, middles;
+    int only_region = region.empty() ? -1 : region[order[task.begin]];
+    for (int i = task.begin; i < task.end; ++i) {
+      const int f = order[i];
+      box.add(boxes[f]);
+      middles.low = middles.low.cwiseMin(middle[f]);
+      middles.high = middles.high.cwiseMax(middle[f]);
+      if (!region.empty() && region[f] != only_region) only_region = -1;
+    }
+    nodes[task.node].box = box;
+    nodes[task.node].region = only_region;
+    if (task.end - task.begin <= kLeafFaces) {
+      nodes[task.node].first = task.begin;
+      nodes[task.node].count = task.end - task.begin;
+      continue;
+    }
+    int axis = 0;
+    (middles.high - middles.low).maxCoeff(&axis);
+    const int half = (task.begin + task.end) / 2;
+    std::nth_element(order.begin() + task.begin, order.begin() + half, order.begin() + task.end,
+                     [&middle, axis](int f, int g) {
+                       return middle[f][axis] != middle[g][axis] ? middle[f][axis] < middle[g][axis] : f < g;
+                     });
+    const int left = static_cast<int>(nodes.size());
+    nodes.resize(nodes.size() + 2);
+    nodes[task.node].left = left;
+    nodes[task.node].right = left + 1;
+    tasks.push_back({left, task.begin, half});
+    tasks.push_back({left + 1, half, task.end});
+  }
+}
+
+SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : tree_(std::make_unique<Tree>()) {
+  tree_->mesh = mesh;
+  tree_->region = std::move(face_region);
+  tree_->build();
+}
+
+SurfaceIndex::~SurfaceIndex() = default;
+SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
+SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
+
+const TriangleMesh& SurfaceIndex::mesh() const { return tree_->mesh; }
+
+SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const {
+  const Tree& tree = *tree_;
+  SurfacePoint best;
+  best.squared_distance = std::numeric_limits<double>::infinity();
+  if (tree.nodes.empty()) return best;
+  if (filter.hint >= 0 && tree.passes(filter.hint, filter)) {
+    const SurfacePoint walked = walk(p, filter.hint);
+    if (tree.passes(walked.face, filter)) best = walked;
+    else tree.take(p, filter.hint, best);
+  }
+
+  struct Entry {
+    int node;
+    double squared_distance;
+  };
+  Entry stack[kStackSize];
+  int size = 0;
+  stack[size++] = {0, tree.nodes[0].box.squared_distance(p)};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (!(entry.squared_distance < best.squared_distance)) continue;
+    const Node& node = tree.nodes[entry.node];
+    if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
+    if (node.count > 0) {
+      for (int i = node.first; i < node.first + node.count; ++i)
+        if (tree.passes(tree.order[i], filter)) tree.take(p, tree.order[i], best);
+      continue;
+    }
+    Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
+    Entry far{node.right, tree.nodes[node.right].box.squared_distance(p)};
+    if (far.squared_distance < near.squared_distance) std::swap(near, far);
+    if (far.squared_distance < best.squared_distance) stack[size++] = far;
+    if (near.squared_distance < best.squared_distance) stack[size++] = near;
+  }
+  if (best.face < 0) best.squared_distance = 0;
+  return best;
+}
+
+SurfacePoint SurfaceIndex::walk(const Vector3& p, int start) const {
+  const Tree& tree = *tree_;
+  SurfacePoint best;
+  best.squared_distance = std::numeric_limits<double>::infinity();
+  tree.take(p, start, best);
+  if (best.face < 0) best = {start, tree.nearest_on_face(p, start), best.squared_distance};  // p is not finite
+  for (bool moved = true; moved;) {
+    moved = false;
+    // Neighbours about the corners too: at a vertex the nearest point of the next faces ties across edges.
+    const int f = best.face;
+    for (int i = 0; i < 3; ++i) {
+      const int first = 3 * f + i;
+      int h = first, steps = 0;
+      do {
+        h = tree.mesh.rotate_ccw(h);
+        if (h < 0 || h == first) break;
+        const int g = h / 3;
+        if (tree.region.empty() || tree.region[g] == tree.region[start]) moved |= tree.take(p, g, best);
+      } while (++steps < 64);
+    }
+  }
+  return best;
+}
+
+}  // namespace hybrid_quad

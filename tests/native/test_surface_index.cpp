@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hybrid_quad/mesh/surface_index.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+double brute_force(const TriangleMesh& m, const Vector3& p, int region, const std::vector<int>& regions) {
+  double best = 1e300;
+  for (int f = 0; f < m.face_count(); ++f) {
+    if (region >= 0 && regions[f] != region) continue;
+    const auto& t = m.face(f);
+    best = std::min(best, (nearest_on_triangle(p, m.position(t[0]), m.position(t[1]), m.position(t[2])) - p).squaredNorm());
+  }
+  return best;
+}
+
+TEST(SurfaceIndex, FindsWhatBruteForceFinds) {
+  const TriangleMesh m = test::torus(24, 12);
+  std::vector<int> regions(m.face_count());
+  for (int f = 0; f < m.face_count(); ++f) regions[f] = f % 3;
+  const SurfaceIndex index(m, regions);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-2, 2);
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 p(u(random), u(random), u(random));
+    SurfaceIndex::Filter filter;
+    filter.region = i % 4 - 1;
+    if (i % 2) filter.hint = i % m.face_count();
+    const SurfacePoint q = index.nearest(p, filter);
+    ASSERT_GE(q.face, 0);
+    EXPECT_NEAR(q.squared_distance, brute_force(m, p, filter.region, regions), 1e-12);
+    EXPECT_NEAR((q.position - p).squaredNorm(), q.squared_distance, 1e-12);
+    if (filter.region >= 0) EXPECT_EQ(regions[q.face], filter.region);
+  }
+}
+
+TEST(SurfaceIndex, NormalFilterKeepsToOneSideOfAThinSheet) {
+  const TriangleMesh m = test::box(4, Vector3(1, 1, 0.01));
+  const SurfaceIndex index(m, {});
+  SurfaceIndex::Filter filter;
+  filter.normal = Vector3(0, 0, 1);
+  filter.min_cosine = 0.5;
+  const SurfacePoint q = index.nearest(Vector3(0.4, 0.4, 0.001), filter);
+  EXPECT_NEAR(q.position.z(), 0.01, 1e-12);
+  filter.normal = Vector3(1, 1, 1).normalized();
+  filter.min_cosine = 0.9;
+  EXPECT_EQ(index.nearest(Vector3(0, 0, 0), filter).face, -1);
+}
+
+TEST(SurfaceIndex, WalkReachesTheNearestPointOfAConvexSurface) {
+  const TriangleMesh m = test::icosphere(3);
+  const SurfaceIndex index(m, {});
+  for (int f = 0; f < m.face_count(); f += 37) {
+    const Vector3 p = 1.1 * Vector3(0.3, -0.5, 0.8);
+    EXPECT_NEAR(index.walk(p, f).squared_distance, index.nearest(p).squared_distance, 1e-12);
+  }
+}
+
+TEST(SurfaceIndex, DegenerateTriangleActsAsItsSegment) {
+  const Vector3 q = nearest_on_triangle({0.5, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0.3, 0, 0});
+  EXPECT_NEAR((q - Vector3(0.5, 0, 0)).norm(), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
