@@ -1,0 +1,77 @@
+"""Entry point: reads the command line, runs a command and turns every failure into a message and an exit status."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+
+from .. import __version__
+from ..core.errors import Cancelled, InputError, InternalError
+from ..core.mesh_io import MeshFileError
+from . import check_command, exit_codes, remesh_command
+from .messages import describe_elements, say
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs ``hybrid-quad`` and returns its exit status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Without the program's name; default ``sys.argv[1:]``.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    parser = _parser()
+    try:
+        options = parser.parse_args(given)
+    except SystemExit as stop:  # argparse has printed usage, help or version
+        return int(stop.code or 0)
+    try:
+        # A job scheduler's "terminate" is answered like Ctrl-C.
+        signal.signal(signal.SIGTERM, _interrupt)
+    except ValueError:
+        pass  # not in the main thread, where handlers cannot be set
+    try:
+        return int(options.run(options))
+    except InputError as error:
+        say(f"{options.input}: {error}{describe_elements(error)} [{error.code}]")
+        return exit_codes.CANNOT_REMESH
+    except (MeshFileError, UsageProblem) as error:
+        say(str(error))
+        return exit_codes.WRONG_USAGE
+    except (Cancelled, KeyboardInterrupt) as error:
+        say(f"{options.input}: {str(error) or 'cancelled'}; nothing was written")
+        return exit_codes.CANCELLED
+    except Exception as error:
+        kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
+        say(
+            f"internal error: {kind}{error}\n"
+            "This is a bug of hybrid-quad, not of your mesh, and nothing was written. Please report it with the mesh, "
+            f"the version ({__version__}) and this command:\n  hybrid-quad {shlex.join(given)}"
+        )
+        return exit_codes.BUG
+
+
+UsageProblem = remesh_command.UsageProblem
+
+
+def _interrupt(_number: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt("terminated")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="hybrid-quad",
+        description="Pure-quad remeshing of surface meshes.",
+        epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal error; "
+        "4 cancelled or time limit. A result file is written only with 0.",
+    )
+    parser.add_argument("--version", action="version", version=f"hybrid-quad {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    remesh_command.add_to(commands)
+    check_command.add_to(commands)
+    return parser

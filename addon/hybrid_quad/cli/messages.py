@@ -1,0 +1,32 @@
+"""What the command says on the error stream."""
+
+from __future__ import annotations
+
+import sys
+
+from ..core.errors import InputError
+
+_SHOWN = 10
+
+
+def say(text: str) -> None:
+    """One message on the error stream, under the program's name."""
+    print(f"hybrid-quad: {text}", file=sys.stderr, flush=True)
+
+
+def list_elements(kind: str, elements: list[str]) -> str:
+    """For example ``"faces 3, 8, 10 ... (217 in all)"``; empty for no elements."""
+    if not elements:
+        return ""
+    plural = {"vertex": "vertices"}.get(kind, f"{kind}s") if len(elements) > 1 else kind
+    more = f" ... ({len(elements)} in all)" if len(elements) > _SHOWN else ""
+    return f"{plural} {', '.join(elements[:_SHOWN])}{more}"
+
+
+def describe_elements(error: InputError) -> str:
+    """The elements an error names, in parentheses, or an empty string."""
+    names = [str(element) for element in error.elements]
+    if error.element_kind == "edge":
+        names = [f"{a}-{b}" for a, b in zip(names[0::2], names[1::2])]
+    text = list_elements(error.element_kind, names)
+    return f" ({text})" if text else ""

@@ -1,0 +1,150 @@
+"""``hybrid-quad remesh``: a mesh file in, a quad mesh file out."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import time
+from typing import Any
+
+from .. import __version__
+from ..core import mesh_io, report
+from ..core.errors import Cancelled, InputError, InternalError
+from ..core.options import SOLVERS, RemeshOptions
+from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.validation import violations
+from . import exit_codes
+from .messages import say
+from .progress_bar import ProgressBar
+
+
+class UsageProblem(Exception):
+    """Options that make no sense, each of which argparse took for good."""
+
+
+def add_to(commands: Any) -> None:
+    """Adds the command to the parser's subcommands."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        "remesh", help="turn a mesh into pure quads", description="Turns any surface mesh into pure quads."
+    )
+    parser.add_argument("input", metavar="IN", help="mesh file: .obj, .ply, .stl or .off")
+    parser.add_argument("output", metavar="OUT", help="result: .obj, .ply or .off")
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--quads", type=int, metavar="N", help="number of quads to aim at (default 5000)")
+    size.add_argument("--edge-length", type=float, metavar="L", help="length of the quads' edges instead")
+    sharp = parser.add_mutually_exclusive_group()
+    sharp.add_argument(
+        "--sharp-angle",
+        type=float,
+        default=40.0,
+        metavar="DEG",
+        help="keep edges whose faces' normals differ by more than this (default 40)",
+    )
+    sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary, and what --features names")
+    parser.add_argument("--features", metavar="FILE", help="edges to keep: two 0-based vertex indices of IN a line")
+    parser.add_argument(
+        "--solver",
+        choices=SOLVERS,
+        default=SOLVERS[0],
+        help="how the periodic field is found; eigen is the slow reference (default %(default)s)",
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="same seed, same result (default 0)")
+    parser.add_argument(
+        "--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it"
+    )
+    parser.add_argument("--time-limit", type=float, metavar="SECONDS", help="stop with status 4 after this time")
+    parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
+    parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
+    parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Remeshes, checks the result, writes it, and returns the exit status; failures are raised."""
+    started = time.monotonic()
+    options = _options(arguments)
+    mesh_io.check_writable(arguments.output)
+    try:
+        result = _remesh(arguments, options, started)
+    except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:
+        _write_failure(arguments, options, error)
+        raise
+    _write(arguments, result)
+    if not arguments.quiet:
+        for warning in result.report["warnings"]:
+            say(f"warning: {warning}")
+        seconds = time.monotonic() - started
+        say(
+            f"{arguments.output}: {len(result.quads)} quads, {result.report['irregular_vertices']} irregular vertices, "
+            f"scaled Jacobian {result.report['scaled_jacobian']['mean']:.3f} in the mean, {seconds:.1f} s"
+        )
+    return exit_codes.OK
+
+
+def _options(arguments: argparse.Namespace) -> RemeshOptions:
+    try:
+        return RemeshOptions(
+            quads=RemeshOptions.quads if arguments.quads is None else arguments.quads,
+            edge_length=arguments.edge_length,
+            sharp_angle=None if arguments.no_sharp else arguments.sharp_angle,
+            solver=arguments.solver,
+            seed=arguments.seed,
+            threads=arguments.threads,
+            time_limit=arguments.time_limit,
+        )
+    except ValueError as error:
+        raise UsageProblem(str(error)) from error
+
+
+def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: float) -> RemeshResult:
+    vertices, polygons = mesh_io.read_mesh(arguments.input)
+    sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
+    if options.time_limit is not None and time.monotonic() - started > options.time_limit:
+        raise Cancelled("the time limit passed while the mesh was read", "time_limit")
+    with ProgressBar(arguments.quiet) as bar:
+        result = remesh_with_options(
+            vertices,
+            polygons,
+            options,
+            sharp_edges=sharp_edges,
+            progress=bar.update,
+            dump_stages=arguments.dump_stages,
+        )
+    problems = violations(result.vertices, result.quads)
+    if problems:
+        raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
+    return result
+
+
+def _write(arguments: argparse.Namespace, result: RemeshResult) -> None:
+    # The report first: where it cannot be written, no result must be left behind. From here on, a signal that comes
+    # while the files are put in place would leave one of the two; it is held back for these few milliseconds.
+    held = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        for number in held:
+            signal.signal(number, signal.SIG_IGN)
+    except ValueError:
+        held = {}  # not in the main thread, which alone is interrupted
+    try:
+        if arguments.report:
+            with mesh_io.replacing(arguments.report) as file:
+                file.write(report.as_text(result.report).encode())
+        mesh_io.write_mesh(arguments.output, result.vertices, result.quads)
+    finally:
+        for number, handler in held.items():
+            signal.signal(number, handler)
+
+
+def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error: BaseException) -> None:
+    if not arguments.report:
+        return
+    if isinstance(error, InputError):
+        status = "input_error"
+    elif isinstance(error, mesh_io.MeshFileError):
+        status = "unreadable_file"
+    elif isinstance(error, (Cancelled, KeyboardInterrupt)):
+        status = getattr(error, "code", "cancelled")
+    else:
+        status = "internal_error"
+    with mesh_io.replacing(arguments.report) as file:
+        file.write(report.as_text(report.failed(status, error, options, __version__)).encode())

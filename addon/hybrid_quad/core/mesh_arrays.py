@@ -1,0 +1,91 @@
+"""Checked conversion between what callers pass as a mesh and the flat arrays that the compiled module takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int32]
+
+
+class Polygons(NamedTuple):
+    """Polygons of any size, one after the other.
+
+    Attributes
+    ----------
+    sizes : (#F,) int32
+        Corners of each polygon.
+    vertices : (sum of sizes,) int32
+        0-based vertices of their corners.
+    """
+
+    sizes: IntArray
+    vertices: IntArray
+
+
+FacesLike = Union[Polygons, npt.ArrayLike, Sequence[Sequence[int]]]
+
+
+def as_vertices(vertices: npt.ArrayLike) -> FloatArray:
+    """`vertices` as a contiguous (n, 3) float64 array."""
+    array = np.ascontiguousarray(vertices, dtype=np.float64)
+    if array.size == 0:
+        return array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"vertices must be an (n, 3) array, not one of shape {array.shape}")
+    return array
+
+
+def as_polygons(faces: FacesLike) -> Polygons:
+    """`faces` in flat form.
+
+    Parameters
+    ----------
+    faces : Polygons, (m, k) integers, or a sequence of sequences of integers
+        0-based vertices of each face.
+    """
+    if isinstance(faces, Polygons):
+        return Polygons(_as_indices(faces.sizes, "face sizes"), _as_indices(faces.vertices, "faces"))
+    if not isinstance(faces, np.ndarray):
+        rows: list[Any] = list(faces)  # type: ignore[arg-type]
+        sizes = np.fromiter((len(row) for row in rows), dtype=np.int32, count=len(rows))
+        return Polygons(sizes, _as_indices(list(chain.from_iterable(rows)), "faces"))
+    if faces.size == 0:
+        return Polygons(np.zeros(0, np.int32), np.zeros(0, np.int32))
+    if faces.ndim != 2:
+        raise ValueError(f"faces must be an (m, k) array or a list of lists, not an array of shape {faces.shape}")
+    sizes = np.full(faces.shape[0], faces.shape[1], dtype=np.int32)
+    return Polygons(sizes, _as_indices(faces.reshape(-1), "faces"))
+
+
+def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
+    """Vertex pairs as a (k, 2) int32 array; none for ``None``."""
+    if edges is None:
+        return np.zeros((0, 2), np.int32)
+    if not isinstance(edges, np.ndarray):
+        edges = [tuple(edge) for edge in edges]  # type: ignore[union-attr]
+    array = np.asarray(edges)
+    if array.size == 0:
+        return np.zeros((0, 2), np.int32)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"sharp_edges must be a (k, 2) array of vertex pairs, not one of shape {array.shape}")
+    return _as_indices(array, "sharp_edges")
+
+
+def _as_indices(values: npt.ArrayLike, name: str) -> IntArray:
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.zeros(array.shape, np.int32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be integers, not {array.dtype}")
+    limits = np.iinfo(np.int32)
+    if array.min() < limits.min or array.max() > limits.max:
+        raise InputError("index_out_of_range", f"{name} hold an index that no mesh of this size has")
+    return np.ascontiguousarray(array, dtype=np.int32)

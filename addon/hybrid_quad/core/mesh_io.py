@@ -1,0 +1,260 @@
+"""Meshes from and to files: .obj, .ply, .stl and .off in; .obj, .ply and .off out.
+
+PLY and STL are read by meshio. OBJ and OFF are read here: meshio takes only triangles from OFF, and in OBJ it mistakes
+relative indices and refuses files with more texture coordinates or normals than vertices. Vertices are never merged or
+reordered, except those of STL, which has none of its own.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from .mesh_arrays import FloatArray, IntArray, Polygons, as_polygons
+
+READABLE = (".obj", ".ply", ".stl", ".off")
+WRITABLE = (".obj", ".ply", ".off")
+
+
+class MeshFileError(Exception):
+    """A file cannot be read or written as a mesh; the message names it and says why."""
+
+
+def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
+    """Reads a polygon mesh.
+
+    Parameters
+    ----------
+    path : path
+        The format follows from the name's end, see `READABLE`.
+
+    Returns
+    -------
+    vertices : (n, 3) float64
+    polygons : Polygons
+        Indices as the file has them, 0-based; they may be out of range where the file is wrong.
+
+    Raises
+    ------
+    MeshFileError
+    """
+    path = Path(path)
+    reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_with_meshio, ".stl": _read_with_meshio}.get(
+        path.suffix.lower()
+    )
+    if reader is None:
+        raise MeshFileError(f"{path}: cannot read '{path.suffix}' files, only {', '.join(READABLE)}")
+    try:
+        return reader(path)
+    except OSError as error:
+        raise MeshFileError(f"{path}: {error.strerror or error}") from error
+    except (ValueError, IndexError, OverflowError) as error:
+        raise MeshFileError(f"{path}: {error}") from error
+
+
+def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArray) -> None:
+    """Writes a quad mesh so that the file is either whole or, on failure, as it was before.
+
+    Parameters
+    ----------
+    path : path
+        The format follows from the name's end, see `WRITABLE`.
+    vertices : (n, 3) float64
+        Written so that reading gives the same bits.
+    quads : (m, 4) int32
+
+    Raises
+    ------
+    MeshFileError
+    """
+    path = Path(path)
+    check_writable(path)
+    writer = {".obj": _write_obj, ".ply": _write_ply, ".off": _write_off}[path.suffix.lower()]
+    with replacing(path) as file:
+        writer(file, vertices, quads)
+
+
+def check_writable(path: str | os.PathLike[str]) -> None:
+    """Raises MeshFileError where `path` could never be written, so that no run is wasted on it."""
+    path = Path(path)
+    if path.suffix.lower() not in WRITABLE:
+        raise MeshFileError(f"{path}: cannot write '{path.suffix}' files, only {', '.join(WRITABLE)}")
+    if not path.parent.is_dir():
+        raise MeshFileError(f"{path}: the folder {path.parent} does not exist")
+    if path.is_dir():
+        raise MeshFileError(f"{path}: is a folder")
+
+
+@contextlib.contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """A file that takes the place of `path` once everything is in it, and vanishes if anything goes wrong before."""
+    path = Path(path)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    except OSError as error:
+        raise MeshFileError(f"{path}: {error.strerror or error}") from error
+    try:
+        with os.fdopen(handle, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, path)
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        if isinstance(error, OSError):
+            raise MeshFileError(f"{path}: {error.strerror or error}") from error
+        raise
+
+
+def read_edges(path: str | os.PathLike[str]) -> IntArray:
+    """Vertex pairs from a text file: two 0-based vertex indices a line; ``#`` starts a comment.
+
+    Raises
+    ------
+    MeshFileError
+        If a line holds anything else; names the line.
+    """
+    path = Path(path)
+    pairs = []
+    for number, line in enumerate(_read_text(path).splitlines(), 1):
+        tokens = line.partition("#")[0].split()
+        if not tokens:
+            continue
+        try:
+            first, second = (int(token) for token in tokens)
+        except ValueError:
+            raise MeshFileError(f"{path}: line {number} is not two vertex indices: {line.strip()!r}") from None
+        pairs.append((first, second))
+    return np.array(pairs, np.int64).reshape(-1, 2)  # type: ignore[return-value]
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise MeshFileError(f"{path}: {error.strerror or error}") from error
+
+
+def _read_obj(path: Path) -> tuple[FloatArray, Polygons]:
+    text = _read_text(path).replace("\\\r\n", " ").replace("\\\n", " ")
+    positions: list[str] = []
+    sizes: list[int] = []
+    corners: list[int] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        tokens = line.split()
+        if not tokens:
+            continue
+        if tokens[0] == "v":
+            if len(tokens) < 4:
+                raise ValueError(f"line {number}: a vertex needs three coordinates: {line.strip()!r}")
+            positions += tokens[1:4]
+        elif tokens[0] == "f":
+            del tokens[0]
+            try:
+                face = [int(token) for token in tokens]
+            except ValueError:
+                face = [_index_of_corner(token, number) for token in tokens]
+            # Positive indices count from 1, negative ones back from the latest vertex. Index 0 becomes -1: out of range.
+            latest = len(positions) // 3
+            corners += [index - 1 if index >= 0 else latest + index for index in face]
+            sizes.append(len(face))
+    return _points_of_tokens(positions), Polygons(np.array(sizes, np.int32), _as_int32(corners))
+
+
+def _index_of_corner(token: str, line_number: int) -> int:
+    try:
+        return int(token.split("/")[0])
+    except ValueError:
+        raise ValueError(f"line {line_number}: {token!r} is no vertex index") from None
+
+
+def _points_of_tokens(tokens: list[str]) -> FloatArray:
+    return np.array(tokens, dtype=object).astype(np.float64).reshape(-1, 3)
+
+
+def _as_int32(values: list[int]) -> IntArray:
+    array = np.array(values, dtype=np.int64)
+    limits = np.iinfo(np.int32)
+    return np.clip(array, limits.min, limits.max).astype(np.int32)  # beyond the range of any mesh either way
+
+
+def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
+    lines = [tokens for line in _read_text(path).splitlines() if (tokens := line.partition("#")[0].split())]
+    if not lines or not lines[0][0].upper().endswith("OFF"):
+        raise ValueError("no OFF header")
+    if lines[0][0].upper() not in ("OFF", "COFF", "NOFF", "CNOFF", "STOFF"):
+        raise ValueError(f"files of kind {lines[0][0]} hold no points in space")
+    lines[0] = lines[0][1:]
+    if not lines[0]:
+        del lines[0]
+    vertex_count, face_count = int(lines[0][0]), int(lines[0][1])
+    if len(lines) < 1 + vertex_count + face_count:
+        raise ValueError(f"ends before all of its {vertex_count} vertices and {face_count} faces")
+    positions = [token for line in lines[1 : 1 + vertex_count] for token in line[:3]]
+    faces = lines[1 + vertex_count : 1 + vertex_count + face_count]
+    sizes = np.array([int(line[0]) for line in faces], np.int32)
+    corners = [int(token) for line in faces for token in line[1 : 1 + int(line[0])]]
+    if len(corners) != int(sizes.sum()):
+        raise ValueError("a face lists fewer vertices than it says")
+    return _points_of_tokens(positions), Polygons(sizes, _as_int32(corners))
+
+
+def _read_with_meshio(path: Path) -> tuple[FloatArray, Polygons]:
+    import meshio
+
+    module = meshio.ply if path.suffix.lower() == ".ply" else meshio.stl
+    try:
+        mesh: Any = module.read(str(path))
+    except OSError:
+        raise
+    except Exception as error:  # meshio lets all kinds of exceptions through where a file is damaged
+        reason = str(error) or type(error).__name__
+        raise MeshFileError(f"{path}: not a {path.suffix.lower()[1:].upper()} file that can be read ({reason})") from error
+    parts = [as_polygons(np.asarray(block.data)) for block in mesh.cells if block.dim == 2 or block.type == "polygon"]
+    points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
+    if not parts:
+        return points, as_polygons([])
+    return points, Polygons(
+        np.concatenate([part.sizes for part in parts]), np.concatenate([part.vertices for part in parts])
+    )
+
+
+def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
+    np.savetxt(file, vertices, fmt="v %.17g %.17g %.17g")
+    np.savetxt(file, quads + 1, fmt="f %d %d %d %d")
+
+
+def _write_off(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
+    file.write(f"OFF\n{len(vertices)} {len(quads)} 0\n".encode())
+    np.savetxt(file, vertices, fmt="%.17g %.17g %.17g")
+    np.savetxt(file, quads, fmt="4 %d %d %d %d")
+
+
+def _write_ply(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
+    # Not by meshio: it writes the time into the file, and the same mesh must give the same bytes.
+    header = (
+        f"ply\nformat binary_{sys.byteorder}_endian 1.0\n"
+        f"element vertex {len(vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
+        f"element face {len(quads)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    faces = np.empty(len(quads), dtype=[("size", "u1"), ("vertices", "=i4", (4,))])
+    faces["size"] = 4
+    faces["vertices"] = quads
+    file.write(header.encode())
+    file.write(np.ascontiguousarray(vertices, "=f8").tobytes())
+    file.write(faces.tobytes())

@@ -1,0 +1,91 @@
+"""What a caller can ask of a run."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from typing import Any
+
+SOLVERS = ("multilevel", "eigen")
+
+
+@dataclass(frozen=True)
+class RemeshOptions:
+    """Settings of a run, checked when they are made.
+
+    Attributes
+    ----------
+    quads : int
+        Number of quads to aim at; ignored where `edge_length` is given.
+    edge_length : float or None
+        Length of the quads' edges, in the units of the vertices.
+    sharp_angle : float or None
+        Edges whose faces' normals differ by more than this many degrees (0..180) become chains of output edges.
+        ``None``: only the boundary and marked edges do.
+    solver : {"multilevel", "eigen"}
+        How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
+    seed : int
+        Seed of every random choice; the same seed gives the same bytes.
+    threads : int
+        Threads to use, 0: as many as this process may. The result does not depend on it.
+    time_limit : float or None
+        Seconds after which the run stops with :class:`~hybrid_quad.Cancelled`.
+    """
+
+    quads: int = 5000
+    edge_length: float | None = None
+    sharp_angle: float | None = 40.0
+    solver: str = "multilevel"
+    seed: int = 0
+    threads: int = 0
+    time_limit: float | None = None
+
+    def __post_init__(self) -> None:
+        _require(_is_integer(self.quads) and 1 <= self.quads < 2**31, f"quads must be a whole number >= 1, not {self.quads!r}")
+        _require(
+            self.edge_length is None or (math.isfinite(self.edge_length) and self.edge_length > 0),
+            f"edge_length must be > 0, not {self.edge_length!r}",
+        )
+        _require(
+            self.sharp_angle is None or 0 <= self.sharp_angle <= 180,
+            f"sharp_angle must be between 0 and 180 degrees, not {self.sharp_angle!r}",
+        )
+        _require(self.solver in SOLVERS, f"solver must be one of {', '.join(SOLVERS)}, not {self.solver!r}")
+        _require(_is_integer(self.seed) and 0 <= self.seed < 2**64, f"seed must be a whole number >= 0, not {self.seed!r}")
+        _require(
+            _is_integer(self.threads) and 0 <= self.threads < 2**16,
+            f"threads must be a whole number >= 0, not {self.threads!r}",
+        )
+        _require(
+            self.time_limit is None or (not math.isnan(self.time_limit) and self.time_limit > 0),
+            f"time_limit must be > 0 seconds, not {self.time_limit!r}",
+        )
+
+    def for_native(self) -> dict[str, Any]:
+        """Keyword arguments of the compiled module's ``remesh``."""
+        return {
+            "quads": int(self.quads),
+            "edge_length": float(self.edge_length or 0.0),
+            "sharp_angle": None if self.sharp_angle is None else float(self.sharp_angle),
+            "solver": self.solver,
+            "seed": int(self.seed),
+            "threads": int(self.threads) or usable_threads(),
+            "time_limit": float(self.time_limit or 0.0),
+        }
+
+
+def usable_threads() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+def _is_integer(value: object) -> bool:
+    return hasattr(value, "__index__") and not isinstance(value, bool)
+
+
+def _require(condition: bool, message: str) -> None:
+    if not condition:
+        raise ValueError(message)

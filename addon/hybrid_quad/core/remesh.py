@@ -1,0 +1,177 @@
+"""From any surface mesh to pure quads, for numpy arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import native, report
+from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices
+from .options import RemeshOptions
+from .snapshots import Snapshot, SnapshotFolder
+
+ProgressCallback = Callable[[str, float], object]
+CancelCallback = Callable[[], bool]
+SnapshotCallback = Callable[[Snapshot], object]
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+@dataclass(frozen=True)
+class RemeshResult:
+    """A pure-quad mesh and how it came about.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64
+        Positions.
+    quads : (m, 4) int32
+        0-based vertices of each quad, oriented as the input.
+    feature_edges : (k, 2) int32
+        Output edges that cover the features and the boundary, in the direction of their curves.
+    feature_curves : (k,) int32
+        The curve that each of `feature_edges` is part of.
+    vertex_kinds : (n,) uint8
+        0: anywhere on the surface, 1: on a feature curve, 2: a corner.
+    report : dict
+        Counts, quality, timings and warnings; see ``docs`` or :mod:`hybrid_quad.core.report`.
+    """
+
+    vertices: FloatArray
+    quads: IntArray
+    feature_edges: IntArray
+    feature_curves: IntArray
+    vertex_kinds: npt.NDArray[np.uint8]
+    report: dict[str, Any]
+
+
+def remesh(
+    vertices: npt.ArrayLike,
+    faces: FacesLike,
+    *,
+    quads: int = 5000,
+    edge_length: float | None = None,
+    sharp_angle: float | None = 40.0,
+    sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    solver: str = "multilevel",
+    seed: int = 0,
+    threads: int = 0,
+    time_limit: float | None = None,
+    progress: ProgressCallback | None = None,
+    cancel: CancelCallback | None = None,
+    dump_stages: PathLike | None = None,
+    on_snapshot: SnapshotCallback | None = None,
+) -> RemeshResult:
+    """Remeshes a surface into pure quads.
+
+    Sharp edges, the boundary and marked edges become chains of output edges; the topology (components, genus,
+    boundary loops) stays. The interpreter's lock is free during the run.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float
+        Positions.
+    faces : (m, 3) or (m, 4) int, or a sequence of sequences of int
+        0-based vertices of each polygon. Any surface will do: open, of any genus, with several components.
+    quads : int
+        Number of quads to aim at.
+    edge_length : float, optional
+        Length of the quads' edges instead of their number, in the units of `vertices`.
+    sharp_angle : float or None
+        Edges whose faces' normals differ by more than this many degrees are features; ``None`` takes none.
+    sharp_edges : (k, 2) int, optional
+        Vertex pairs that are features whatever their angle. Each must be an edge of a face.
+    solver : {"multilevel", "eigen"}
+        How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
+    seed : int
+        Same input, options and seed give the same bytes.
+    threads : int
+        0: all that this process may use. The result does not depend on it.
+    time_limit : float, optional
+        Seconds after which the run stops.
+    progress : callable(stage: str, fraction: float), optional
+        Called at most twenty times a second; `fraction` of the whole run never falls.
+    cancel : callable() -> bool, optional
+        Polled up to twenty times a second; a true answer stops the run within a second.
+    dump_stages : path, optional
+        Folder that receives a ``.vtu`` file of every stage, which ParaView opens. Needs ``meshio``.
+    on_snapshot : callable(Snapshot), optional
+        Receives every stage as arrays instead.
+
+    Returns
+    -------
+    RemeshResult
+
+    Raises
+    ------
+    InputError
+        If the input is no surface; names the elements.
+    Cancelled
+        If `cancel` asked for it, or after `time_limit`. An exception raised in a callback, and KeyboardInterrupt, come
+        back unchanged.
+    InternalError
+        If a promise between two stages did not hold: a bug of this package.
+    ValueError, TypeError
+        If an option makes no sense, or an array has the wrong shape or type.
+    """
+    options = RemeshOptions(quads, edge_length, sharp_angle, solver, seed, threads, time_limit)
+    return remesh_with_options(
+        vertices,
+        faces,
+        options,
+        sharp_edges=sharp_edges,
+        progress=progress,
+        cancel=cancel,
+        dump_stages=dump_stages,
+        on_snapshot=on_snapshot,
+    )
+
+
+def remesh_with_options(
+    vertices: npt.ArrayLike,
+    faces: FacesLike,
+    options: RemeshOptions,
+    *,
+    sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    progress: ProgressCallback | None = None,
+    cancel: CancelCallback | None = None,
+    dump_stages: PathLike | None = None,
+    on_snapshot: SnapshotCallback | None = None,
+) -> RemeshResult:
+    """:func:`remesh`, with the settings in one value."""
+    from .. import __version__
+
+    polygons = as_polygons(faces)
+    result = native.load().remesh(
+        as_vertices(vertices),
+        polygons.sizes,
+        polygons.vertices,
+        sharp_edges=as_edges(sharp_edges),
+        progress=progress,
+        cancel=cancel,
+        snapshot=_snapshot_receiver(dump_stages, on_snapshot),
+        **options.for_native(),
+    )
+    result["report"] = report.finished(result["report"], options, __version__)
+    return RemeshResult(**result)
+
+
+def _snapshot_receiver(
+    dump_stages: PathLike | None, on_snapshot: SnapshotCallback | None
+) -> Callable[[dict[str, Any]], None] | None:
+    receivers: list[SnapshotCallback] = [] if on_snapshot is None else [on_snapshot]
+    if dump_stages is not None:
+        receivers.append(SnapshotFolder(dump_stages).write)
+    if not receivers:
+        return None
+
+    def receive(fields: dict[str, Any]) -> None:
+        snapshot = Snapshot(**fields)
+        for receiver in receivers:
+            receiver(snapshot)
+
+    return receive

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "hybrid_quad/base/errors.h"
+
+namespace hybrid_quad {
+
+/// The Python classes of core/errors.py that stand for the errors of base/errors.h.
+struct ErrorTypes {
+  pybind11::object input_error;
+  pybind11::object cancelled;
+  pybind11::object internal_error;
+};
+
+/// Looked up beside the module, under whatever name the package was imported: Blender's extensions rename it.
+ErrorTypes load_error_types(const pybind11::module_& module);
+
+[[noreturn]] void raise_in_python(const ErrorTypes& types, const InputError& error);
+[[noreturn]] void raise_in_python(const ErrorTypes& types, const InternalError& error);
+/// \param timed_out true where the time limit was the reason
+[[noreturn]] void raise_in_python(const ErrorTypes& types, const Cancelled& error, bool timed_out);
+
+}  // namespace hybrid_quad

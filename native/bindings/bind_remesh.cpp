@@ -1,0 +1,141 @@
+#include "bind_remesh.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+#include "callback_bridge.h"
+#include "defect_list.h"
+#include "hybrid_quad/pipeline/remesh.h"
+#include "polygon_arrays.h"
+
+namespace py = pybind11;
+
+namespace hybrid_quad {
+namespace {
+
+PeriodicSolver solver_named(const std::string& name) {
+  if (name == "multilevel") return PeriodicSolver::kMultilevel;
+  if (name == "eigen") return PeriodicSolver::kEigenGaussNewton;
+  throw py::value_error("solver must be 'multilevel' or 'eigen'");
+}
+
+py::dict dict_of_patches(const PatchRecord& patches) {
+  py::dict result;
+  result["count"] = patches.count;
+  result["morse_smale"] = patches.morse_smale;
+  result["combinatorial"] = patches.combinatorial;
+  result["combinatorial_area_fraction"] = patches.combinatorial_area_fraction;
+  return result;
+}
+
+py::list list_of_stages(const std::vector<StageRecord>& stages) {
+  py::list result;
+  for (const StageRecord& stage : stages) {
+    py::dict row;
+    row["name"] = stage.name;
+    row["seconds"] = stage.seconds;
+    row["peak_mb"] = stage.peak_mb;
+    result.append(row);
+  }
+  return result;
+}
+
+py::dict dict_of_report(const RemeshReport& report) {
+  py::dict jacobian;
+  jacobian["mean"] = report.scaled_jacobian_mean;
+  jacobian["p1"] = report.scaled_jacobian_p1;
+  jacobian["min"] = report.scaled_jacobian_min;
+  py::dict result;
+  result["input_vertices"] = report.input_vertices;
+  result["input_faces"] = report.input_faces;
+  result["working_faces"] = report.working_faces;
+  result["components"] = report.components;
+  result["quads"] = report.quads;
+  result["vertices"] = report.vertices;
+  result["irregular_vertices"] = report.irregular_vertices;
+  result["field_singularities"] = report.field_singularities;
+  result["dislocations"] = report.dislocations;
+  result["dislocations_found"] = report.dislocations_found;
+  result["singular_area_fraction"] = report.singular_area_fraction;
+  result["patches"] = dict_of_patches(report.patches);
+  result["scaled_jacobian"] = jacobian;
+  result["hausdorff_percent"] = report.hausdorff_percent;
+  result["mean_distance_percent"] = report.mean_distance_percent;
+  result["feature_hausdorff_percent"] = report.feature_hausdorff_percent;
+  result["stages"] = list_of_stages(report.stages);
+  result["warnings"] = report.warnings;
+  result["defects"] = list_of_defects(report.defects);
+  return result;
+}
+
+py::dict dict_of_result(const RemeshResult& result) {
+  const QuadMesh& mesh = result.mesh;
+  std::vector<std::array<int, 2>> edges;
+  std::vector<int> curves;
+  for (const QuadMesh::FeatureEdge& edge : mesh.feature_edges) {
+    edges.push_back({edge.a, edge.b});
+    curves.push_back(edge.curve);
+  }
+  std::vector<std::uint8_t> kinds;
+  kinds.reserve(mesh.kind.size());
+  for (const VertexKind kind : mesh.kind) kinds.push_back(static_cast<std::uint8_t>(kind));
+  py::dict out;
+  out["vertices"] = array_from_points(mesh.positions);
+  out["quads"] = array_from_rows(mesh.quads);
+  out["feature_edges"] = array_from_rows(edges);
+  out["feature_curves"] = array_from_values(curves);
+  out["vertex_kinds"] = array_from_values(kinds);
+  out["report"] = dict_of_report(result.report);
+  return out;
+}
+
+RemeshResult run_without_gil(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
+  const py::gil_scoped_release release;
+  return remesh(soup, options, context);
+}
+
+}  // namespace
+
+void bind_remesh(py::module_& module, const ErrorTypes& errors) {
+  module.def(
+      "remesh",
+      [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int quads,
+               double edge_length, std::optional<double> sharp_angle, const IntArray& sharp_edges,
+               const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
+               py::object cancel, py::object snapshot) {
+        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
+        RemeshOptions options;
+        options.quads = quads;
+        options.edge_length = edge_length;
+        options.use_sharp_angle = sharp_angle.has_value();
+        options.sharp_angle = sharp_angle.value_or(options.sharp_angle);
+        options.marked_edges = pairs_from_array(sharp_edges);
+        options.solver = solver_named(solver);
+        CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), time_limit);
+        try {
+          const RemeshResult result = run_without_gil(soup, options, bridge.context(seed, threads));
+          bridge.rethrow_pending();
+          bridge.finish("done");
+          return dict_of_result(result);
+        } catch (const InputError& error) {
+          bridge.rethrow_pending();
+          raise_in_python(errors, error);
+        } catch (const InternalError& error) {
+          bridge.rethrow_pending();
+          raise_in_python(errors, error);
+        } catch (const Cancelled& error) {
+          bridge.rethrow_pending();
+          raise_in_python(errors, error, bridge.timed_out());
+        }
+      },
+      py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
+      py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"), py::arg("solver"),
+      py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
+      py::arg("cancel").none(true), py::arg("snapshot").none(true),
+      "Quad mesh, feature edges and report of one run, as a dict.");
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <vector>
+
+#include "polygon_arrays.h"
+
+namespace hybrid_quad {
+
+/// A list of dicts with the fields of Defect; `elements` is an array.
+inline pybind11::list list_of_defects(const std::vector<Defect>& defects) {
+  namespace py = pybind11;
+  py::list result;
+  for (const Defect& defect : defects) {
+    py::dict row;
+    row["code"] = defect.code;
+    row["element_kind"] = defect.element_kind;
+    row["elements"] = array_from_values(defect.elements);
+    row["repairable"] = defect.repairable;
+    row["remedy"] = defect.remedy;
+    result.append(row);
+  }
+  return result;
+}
+
+}  // namespace hybrid_quad

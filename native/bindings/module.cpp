@@ -1,0 +1,12 @@
+#include <pybind11/pybind11.h>
+
+#include "bind_check.h"
+#include "bind_errors.h"
+#include "bind_remesh.h"
+
+PYBIND11_MODULE(_native, module) {
+  module.doc() = "Compiled core of hybrid_quad; call it through hybrid_quad.remesh and hybrid_quad.check.";
+  const hybrid_quad::ErrorTypes errors = hybrid_quad::load_error_types(module);
+  hybrid_quad::bind_check(module);
+  hybrid_quad::bind_remesh(module, errors);
+}
