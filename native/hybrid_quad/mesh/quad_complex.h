@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include "hybrid_quad/mesh/quad_mesh.h"
@@ -24,6 +26,16 @@ struct QuadComplex {
   int to(int d) const { return vertex[next(d)]; }
 };
 
+/// The complex of an indexed quad list: sides with the same two vertices are glued, all vertices free (anchor 0), no curves.
+/// \throws InternalError if a side is used twice in the same direction, or by more than two quads
+QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<std::array<int, 4>>& quads);
+
+/// The vertices of a gluing: for each dart the number of its origin, numbered 0.. in the order of their first darts.
+std::vector<int> vertex_orbits(const std::vector<int>& opposite);
+
+/// V - E + F, vertices no quad uses not counted.
+int euler_characteristic(const QuadComplex& complex);
+
 /// Gluing is an involution, sides agree on vertices and curves, every vertex id is one orbit.
 std::vector<std::string> violations_of(const QuadComplex& complex);
 
@@ -40,6 +52,7 @@ struct ComplexRepairReport {
 /// \throws InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
 ComplexRepairReport repair_complex(QuadComplex& complex);
 
+/// Vertices and quads keep their numbers. A feature edge is listed once, in the direction of its dart of lower number.
 /// \pre no violation an indexed mesh could not hold (repair_complex)
 QuadMesh to_quad_mesh(const QuadComplex& complex);
 
