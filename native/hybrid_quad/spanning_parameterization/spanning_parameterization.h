@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hybrid_quad/periodic_field/periodic_field.h"
@@ -24,6 +25,8 @@ struct SpanningParameterization {
   int dislocations_found = 0;      ///< unit charges before cancellation
   int dislocations_left = 0;       ///< after
   int folded_faces = 0;            ///< faces with det <= 0
+  int folded_feature_edges = 0;    ///< feature edges along which the coordinate does not grow
+  int vanished_curves = 0;         ///< feature curves that get no quad edge
 };
 
 struct SpanningOptions {
