@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/features/features.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+FeatureGraph detect(const TriangleMesh& m, const FeatureOptions& options = {}) {
+  const FeatureGraph g = detect_features(m, options, RunContext{});
+  EXPECT_EQ(violations_of(g, m), std::vector<std::string>{});
+  return g;
+}
+
+int corners(const FeatureGraph& g) {
+  int n = 0;
+  for (const char c : g.is_corner) n += c;
+  return n;
+}
+
+int regions(const FeatureGraph& g) {
+  int n = 0;
+  for (const int r : g.face_region) n = std::max(n, r + 1);
+  return n;
+}
+
+TEST(Features, BoxHasTwelveEdgesEightCornersSixRegions) {
+  for (const int n : {1, 2, 5}) {
+    const FeatureGraph g = detect(test::box(n));
+    EXPECT_EQ(g.curves.size(), 12u);
+    EXPECT_EQ(corners(g), 8);
+    EXPECT_EQ(regions(g), 6);
+    for (const auto& c : g.curves) EXPECT_EQ(static_cast<int>(c.vertices.size()), n + 1);
+  }
+}
+
+TEST(Features, SmoothSurfaceHasNone) {
+  const FeatureGraph g = detect(test::icosphere(3));
+  EXPECT_TRUE(g.curves.empty());
+  EXPECT_EQ(regions(g), 1);
+}
+
+TEST(Features, CylinderHasTwoClosedBoundaryCurves) {
+  const FeatureGraph g = detect(test::open_cylinder(32, 8));
+  ASSERT_EQ(g.curves.size(), 2u);
+  for (const auto& c : g.curves) {
+    EXPECT_TRUE(c.closed);
+    EXPECT_TRUE(c.boundary);
+    EXPECT_EQ(c.vertices.front(), c.vertices.back());
+  }
+}
+
+TEST(Features, GridBoundaryTurnsAtItsCorners) {
+  const FeatureGraph g = detect(test::flat_grid(5, 4));
+  EXPECT_EQ(corners(g), 4);
+  EXPECT_EQ(g.curves.size(), 4u);
+}
+
+TEST(Features, SharpAngleDecides) {
+  const TriangleMesh m = test::wedge(4, 120);  // normals differ by 60 degrees
+  FeatureOptions options;
+  options.sharp_angle = 59;
+  EXPECT_EQ(regions(detect(m, options)), 2);
+  options.sharp_angle = 61;
+  EXPECT_EQ(regions(detect(m, options)), 1);
+  options.sharp_angle = 10;
+  options.use_sharp_angle = false;
+  EXPECT_EQ(regions(detect(m, options)), 1);
+}
+
+TEST(Features, MarkedEdgesStayHoweverShort) {
+  const TriangleMesh m = test::icosphere(3);
+  FeatureOptions options;
+  options.minimum_length = 100;
+  const int h = 77;
+  options.marked_edges = {{m.from(h), m.to(h)}};
+  const FeatureGraph g = detect(m, options);
+  ASSERT_EQ(g.curves.size(), 1u);
+  EXPECT_TRUE(g.is_corner[m.from(h)] && g.is_corner[m.to(h)]);
+  EXPECT_EQ(regions(g), 1);
+  options.marked_edges = {{m.from(h), m.from(h)}};
+  EXPECT_THROW(detect(m, options), InputError);
+}
+
+TEST(Features, MinimumLengthDropsShortSetsOnly) {
+  FeatureOptions options;
+  options.minimum_length = 11.9;
+  EXPECT_EQ(detect(test::box(3), options).curves.size(), 12u);
+  options.minimum_length = 12.1;
+  EXPECT_TRUE(detect(test::box(3), options).curves.empty());
+}
+
+TEST(Features, WeakEdgesBridgeAGapBetweenStrongOnes) {
+  // A wedge whose fold is soft in the middle: 60 degrees at both ends, 30 degrees at half its length.
+  const int n = 16;
+  const TriangleMesh flat = test::flat_grid(2, n, 2, 8);
+  std::vector<Vector3> p = flat.positions();
+  for (Vector3& q : p) {
+    const double soft = std::exp(-std::pow((q.y() - 4) / 1.0, 2));
+    const double slope = std::tan((30 - 13 * soft) * 3.14159265358979 / 180);
+    q.z() = -slope * std::abs(q.x() - 1);
+  }
+  const TriangleMesh m(std::move(p), flat.faces());
+  FeatureOptions options;
+  EXPECT_EQ(regions(detect(m, options)), 2);
+  options.weak_angle = 39;
+  EXPECT_EQ(regions(detect(m, options)), 1);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
