@@ -12,7 +12,7 @@ class ProgressBar:
     """A bar for :func:`hybrid_quad.remesh`'s `progress`, shown while the object is used as a context."""
 
     def __init__(self, quiet: bool) -> None:
-        self._bar: tqdm = tqdm(  # type: ignore[type-arg]
+        self._bar = tqdm(
             total=100,
             disable=quiet,
             file=sys.stderr,

@@ -64,6 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
     options = _options(arguments)
     mesh_io.check_writable(arguments.output)
+    if arguments.report:
+        mesh_io.check_place(arguments.report)
     try:
         result = _remesh(arguments, options, started)
     except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:

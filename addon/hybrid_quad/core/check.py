@@ -12,7 +12,7 @@ from . import native
 from .mesh_arrays import FacesLike, IntArray, as_polygons, as_vertices
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Defect:
     """One kind of defect and where it is.
 

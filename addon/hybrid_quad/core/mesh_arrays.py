@@ -70,7 +70,7 @@ def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
     if edges is None:
         return np.zeros((0, 2), np.int32)
     if not isinstance(edges, np.ndarray):
-        edges = [tuple(edge) for edge in edges]  # type: ignore[union-attr]
+        edges = [tuple(edge) for edge in edges]  # type: ignore[union-attr, arg-type]
     array = np.asarray(edges)
     if array.size == 0:
         return np.zeros((0, 2), np.int32)

@@ -86,6 +86,12 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     path = Path(path)
     if path.suffix.lower() not in WRITABLE:
         raise MeshFileError(f"{path}: cannot write '{path.suffix}' files, only {', '.join(WRITABLE)}")
+    check_place(path)
+
+
+def check_place(path: str | os.PathLike[str]) -> None:
+    """Raises MeshFileError where no file could be put at `path`."""
+    path = Path(path)
     if not path.parent.is_dir():
         raise MeshFileError(f"{path}: the folder {path.parent} does not exist")
     if path.is_dir():
@@ -224,7 +230,9 @@ def _read_with_meshio(path: Path) -> tuple[FloatArray, Polygons]:
         raise
     except Exception as error:  # meshio lets all kinds of exceptions through where a file is damaged
         reason = str(error) or type(error).__name__
-        raise MeshFileError(f"{path}: not a {path.suffix.lower()[1:].upper()} file that can be read ({reason})") from error
+        raise MeshFileError(
+            f"{path}: not a {path.suffix.lower()[1:].upper()} file that can be read ({reason})"
+        ) from error
     parts = [as_polygons(np.asarray(block.data)) for block in mesh.cells if block.dim == 2 or block.type == "polygon"]
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     if not parts:

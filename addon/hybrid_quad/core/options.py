@@ -42,7 +42,10 @@ class RemeshOptions:
     time_limit: float | None = None
 
     def __post_init__(self) -> None:
-        _require(_is_integer(self.quads) and 1 <= self.quads < 2**31, f"quads must be a whole number >= 1, not {self.quads!r}")
+        _require(
+            _is_integer(self.quads) and 1 <= self.quads < 2**31,
+            f"quads must be a whole number >= 1, not {self.quads!r}",
+        )
         _require(
             self.edge_length is None or (math.isfinite(self.edge_length) and self.edge_length > 0),
             f"edge_length must be > 0, not {self.edge_length!r}",
@@ -52,7 +55,9 @@ class RemeshOptions:
             f"sharp_angle must be between 0 and 180 degrees, not {self.sharp_angle!r}",
         )
         _require(self.solver in SOLVERS, f"solver must be one of {', '.join(SOLVERS)}, not {self.solver!r}")
-        _require(_is_integer(self.seed) and 0 <= self.seed < 2**64, f"seed must be a whole number >= 0, not {self.seed!r}")
+        _require(
+            _is_integer(self.seed) and 0 <= self.seed < 2**64, f"seed must be a whole number >= 0, not {self.seed!r}"
+        )
         _require(
             _is_integer(self.threads) and 0 <= self.threads < 2**16,
             f"threads must be a whole number >= 0, not {self.threads!r}",

@@ -21,7 +21,7 @@ SnapshotCallback = Callable[[Snapshot], object]
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RemeshResult:
     """A pure-quad mesh and how it came about.
 

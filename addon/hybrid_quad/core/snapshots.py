@@ -13,7 +13,7 @@ import numpy as np
 from .mesh_arrays import FloatArray, IntArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Snapshot:
     """A polygon mesh with named arrays.
 

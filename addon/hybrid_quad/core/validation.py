@@ -165,7 +165,8 @@ def _check_connectivity(found: list[str], darts: _Darts) -> None:
 
 
 def _next(darts: IndexArray) -> IndexArray:
-    return (darts & ~np.int64(3)) | ((darts + 1) & 3)
+    following: IndexArray = (darts & ~np.int64(3)) | ((darts + 1) & 3)
+    return following
 
 
 def _labels(count: int, first: IndexArray, second: IndexArray) -> IndexArray:
@@ -187,9 +188,7 @@ def _labels(count: int, first: IndexArray, second: IndexArray) -> IndexArray:
 def _without_area(points: FloatArray, faces: IndexArray) -> npt.NDArray[np.bool_]:
     corners = points[faces]
     with np.errstate(invalid="ignore", over="ignore"):
-        area = 0.5 * np.linalg.norm(
-            np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1
-        )
+        area = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
         mean_edge = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean()
         flat: npt.NDArray[np.bool_] = area <= 1e-12 * mean_edge**2
     return flat

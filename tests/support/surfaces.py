@@ -1,0 +1,138 @@
+"""Small surfaces made on the spot: (vertices, faces), faces as an array or, where sizes differ, a list of lists."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def grid(columns: int, rows: int, width: float = 1.0, height: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Flat rectangle of triangles, open."""
+    x, y = np.meshgrid(np.linspace(0, width, columns + 1), np.linspace(0, height, rows + 1))
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    return vertices, _triangles_of(_lattice(columns, rows))
+
+
+def wavy_grid(count: int = 20) -> tuple[np.ndarray, np.ndarray]:
+    """Open height field without sharp edges."""
+    vertices, faces = grid(count, count)
+    vertices[:, 2] = 0.15 * np.sin(4 * vertices[:, 0]) * np.cos(3 * vertices[:, 1])
+    return vertices, faces
+
+
+def annulus(around: int = 40, across: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Flat ring: two boundary loops."""
+    lattice, faces = grid(around, across)
+    angle, radius = 2 * np.pi * lattice[:, 0], 0.5 + lattice[:, 1]
+    vertices = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(len(angle))])
+    return _glue_columns(vertices, faces[:, ::-1], around)
+
+
+def cylinder(around: int = 32, along: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """Open tube."""
+    lattice, faces = grid(around, along)
+    angle = 2 * np.pi * lattice[:, 0]
+    vertices = np.column_stack([np.cos(angle), np.sin(angle), 3 * lattice[:, 1]])
+    return _glue_columns(vertices, faces, around)
+
+
+def torus(around: int = 40, across: int = 20, tube: float = 0.4) -> tuple[np.ndarray, np.ndarray]:
+    """Closed, genus 1."""
+    i, j = np.divmod(np.arange(around * across), across)
+    u, v = 2 * np.pi * i / around, 2 * np.pi * j / across
+    ring = 1 + tube * np.cos(v)
+    vertices = np.column_stack([ring * np.cos(u), ring * np.sin(u), tube * np.sin(v)])
+    right, up = (i + 1) % around * across, (j + 1) % across
+    corners = np.column_stack([i * across + j, right + j, right + up, i * across + up])
+    return vertices, _triangles_of(corners)
+
+
+def box(n: int = 6, size: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> tuple[np.ndarray, np.ndarray]:
+    """Closed box of n x n quads a side, each split in two: twelve sharp edges, eight corners."""
+    vertices, quads = quad_box(n)
+    return vertices * size, _triangles_of(quads)
+
+
+def sphere(n: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """Closed, genus 0, smooth: a box blown up."""
+    vertices, faces = box(n)
+    vertices = 2 * vertices - 1
+    return vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces
+
+
+def quad_box(n: int = 4) -> tuple[np.ndarray, np.ndarray]:
+    """The unit cube's surface as n x n quads a side."""
+    vertices: dict[tuple[int, int, int], int] = {}
+    faces = []
+
+    def number(point: tuple[int, int, int]) -> int:
+        return vertices.setdefault(point, len(vertices))
+
+    for axis in range(3):
+        for side in (0, n):
+            for i in range(n):
+                for j in range(n):
+                    ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+                    points = [_insert(a, b, axis, side) for a, b in (ring if side else ring[::-1])]
+                    faces.append([number(point) for point in points])
+    return np.array(list(vertices), float) / n, np.array(faces)
+
+
+def mixed_polygons() -> tuple[np.ndarray, list[list[int]]]:
+    """A prism over an L: two concave hexagons and six quads, closed."""
+    outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    vertices = np.array([(*point, z) for z in (0, 1) for point in outline], float)
+    sides = [[i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i] for i in range(6)]
+    return vertices, [[5, 4, 3, 2, 1, 0], [6, 7, 8, 9, 10, 11], *sides]
+
+
+def moebius(around: int = 40, across: int = 4) -> tuple[np.ndarray, np.ndarray]:
+    """Strip with one side: no consistent orientation exists."""
+    i, j = np.divmod(np.arange(around * (across + 1)), across + 1)
+    angle, offset = 2 * np.pi * i / around, (j / across - 0.5) * 0.6
+    ring = 1 + offset * np.cos(angle / 2)
+    vertices = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), offset * np.sin(angle / 2)])
+
+    def at(column: int, row: int) -> int:
+        return column * (across + 1) + row if column < around else across - row
+
+    quads = [[at(c, r), at(c + 1, r), at(c + 1, r + 1), at(c, r + 1)] for c in range(around) for r in range(across)]
+    return vertices, _triangles_of(np.array(quads))
+
+
+def together(*parts: tuple[np.ndarray, np.ndarray], gap: float = 5.0) -> tuple[np.ndarray, np.ndarray]:
+    """Several surfaces side by side in one mesh."""
+    vertices, faces, count = [], [], 0
+    for index, (points, triangles) in enumerate(parts):
+        vertices.append(points + np.array([gap * index, 0, 0]))
+        faces.append(triangles + count)
+        count += len(points)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _lattice(columns: int, rows: int) -> np.ndarray:
+    j, i = np.divmod(np.arange(columns * rows), columns)
+    first = j * (columns + 1) + i
+    return np.column_stack([first, first + 1, first + columns + 2, first + columns + 1])
+
+
+def _triangles_of(quads: np.ndarray) -> np.ndarray:
+    """Split by alternating diagonals, so that no direction is favoured."""
+    flip = (np.arange(len(quads)) % 2).astype(bool)
+    turned = np.where(flip[:, None], np.roll(quads, 1, axis=1), quads)
+    return np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
+
+
+def _glue_columns(vertices: np.ndarray, faces: np.ndarray, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    """Identifies the last column of a lattice with the first."""
+    column = np.arange(len(vertices)) % (columns + 1)
+    kept = column < columns
+    number = np.cumsum(kept) - 1
+    number[~kept] = number[np.flatnonzero(~kept) - columns]
+    return vertices[kept], number[faces]
+
+
+def _insert(a: int, b: int, axis: int, value: int) -> tuple[int, int, int]:
+    """Coordinates a, b in the two directions after `axis` and `value` along it."""
+    point = [0, 0, 0]
+    point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3] = value, a, b
+    return point[0], point[1], point[2]
