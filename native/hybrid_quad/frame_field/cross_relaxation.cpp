@@ -192,6 +192,12 @@ void apply(const CrossSystem& system, const std::vector<double>& mass, const std
   }
 }
 
+/// Coarse levels decide where cones go and cost little: their sweeps grow as fast as their size allows.
+int sweeps_at(const CrossRelaxation& options, std::size_t level) {
+  constexpr double kGrowth = 1.5, kMost = 40;
+  return static_cast<int>(options.sweeps * std::min(std::pow(kGrowth, static_cast<double>(level)), kMost));
+}
+
 }  // namespace
 
 std::vector<Complex> relax_cross_system(const CrossSystem& system, const CrossRelaxation& options, const RunContext& context) {
@@ -216,14 +222,14 @@ std::vector<Complex> relax_cross_system(const CrossSystem& system, const CrossRe
     coarsest.value = coarsest.system.source;
     normalise(coarsest.value, context.seed);
   }
-  sweep(coarsest, options.sweeps, context);
+  sweep(coarsest, 20 * options.sweeps, context);
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
     Level& level = levels[l];
     level.value.resize(level.system.size());
     for (int i = 0; i < level.system.size(); ++i)
       level.value[i] = level.prolongation[i] * levels[l + 1].value[level.aggregate[i]];
     normalise(level.value, context.seed);
-    sweep(level, options.sweeps, context);
+    sweep(level, sweeps_at(options, l), context);
   }
   return levels[0].value;
 }

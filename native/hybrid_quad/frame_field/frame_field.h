@@ -27,7 +27,7 @@ struct FrameField {
 };
 
 struct FrameFieldOptions {
-  int sweeps = 10;         ///< relaxation sweeps a level
+  int sweeps = 10;         ///< relaxation sweeps of the finest level
   int coarsest = 300;      ///< unknowns of the level that is solved directly
   /// Diffusion afterwards, in squared quad edges, one step each: what is smaller than a quad makes no cones.
   std::vector<double> diffusion_times{1.0, 1.0, 1.0};

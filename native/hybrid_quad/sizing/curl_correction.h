@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hybrid_quad/frame_field/frame_field.h"
+
+namespace hybrid_quad {
+
+struct CurlCorrectionOptions {
+  double curl_weight = 1e-5;     ///< lambda
+  double feature_weight = 30.0;
+};
+
+/// How to change every frame, (du, dv) -> X (du, dv) with X = {X00, X01, X10, X11}, so that the edge of two faces
+/// measures the same in both: the minimum over X of
+///   sum over edges  w |X_f d_f + turn (X_g d_g)|^2  +  lambda sum over faces  area (|X - I|^2 weighted 1 on the diagonal, 2 off it)
+/// and of the transversal part of feature edges (MATH 7). Solved for one multiplier per edge and row, which is a screened
+/// Laplacian on edges with a third of the primal system's fill (FEW_SINGULARITIES 3).
+/// \return #F matrices; the identity where nothing couples
+std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface, const FrameField& field,
+                                                   const CurlCorrectionOptions& options, const RunContext& context);
+
+/// Root mean square of what an edge measures differently in its two faces, relative to its length in quads.
+double curl_of(const TriangleMesh& mesh, const FrameField& field);
+
+}  // namespace hybrid_quad
