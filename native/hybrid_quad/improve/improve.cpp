@@ -1,0 +1,34 @@
+#include "hybrid_quad/improve/improve.h"
+
+#include "hybrid_quad/improve/fit.h"
+#include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/valence_moves.h"
+#include "hybrid_quad/improve/workpiece.h"
+
+namespace hybrid_quad {
+
+ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
+                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context) {
+  ImproveReport report;
+  if (quads.quads.empty() || input.face_count() == 0) return report;
+  constexpr double kCurvatureWeight = 20;
+  constexpr int kSweepsBefore = 5;
+  Workpiece piece(quads, input, features, index);
+  if (options.target_length > 0) piece.h = options.target_length;
+  if (!(piece.h > 0)) return report;
+  piece.bind_all();
+  for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
+  SmootherOptions smoothing;
+  smoothing.chord_spring = options.chord_spring;
+  Smoother smoother(piece, smoothing);
+  if (options.edit_connectivity) {
+    smoother.smooth(kSweepsBefore, context);
+    report.connectivity_moves = improve_valences(piece, smoother, context);
+  }
+  smoother.smooth(options.smoothing_sweeps, context);
+  if (options.fit) fit_to_input(piece, smoother, context);
+  quads = piece.mesh.extract();
+  return report;
+}
+
+}  // namespace hybrid_quad

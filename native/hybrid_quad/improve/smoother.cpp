@@ -1,0 +1,333 @@
+#include "hybrid_quad/improve/smoother.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kSmallestEps = 1e-3;
+constexpr double kLongestStep = 0.4;  ///< in edge lengths
+constexpr int kBacktracks = 4;
+constexpr double kBacktrack = 0.35;
+
+Vector3 unit_or(const Vector3& v, const Vector3& otherwise) {
+  const double length = v.norm();
+  return length > 0 && std::isfinite(length) ? Vector3(v / length) : otherwise;
+}
+
+}  // namespace
+
+struct Smoother::Derivatives {
+  double gradient[2] = {0, 0};
+  double hessian[3] = {0, 0, 0};  ///< 00, 01, 11
+};
+
+Smoother::Smoother(Workpiece& piece, const SmootherOptions& options) : piece_(piece), options_(options) {
+  update_frames(true);
+}
+
+void Smoother::update_reference(int q) {
+  const auto& v = piece_.mesh.quad(q);
+  const auto& p = piece_.mesh.positions;
+  const TriangleMesh& input = piece_.input;
+  const Vector3 centre = 0.25 * (p[v[0]] + p[v[1]] + p[v[2]] + p[v[3]]);
+  // Walks from the corners stay on their sheet, however near another one is.
+  Vector3 around = Vector3::Zero();
+  SurfacePoint nearest;
+  for (const int corner : v) {
+    if (!piece_.mesh.is_free(corner) || piece_.face[corner] < 0) continue;
+    const SurfacePoint walked = piece_.index.walk(centre, piece_.face[corner]);
+    if (nearest.face < 0 || walked.squared_distance < nearest.squared_distance) nearest = walked;
+    around += input.normal(piece_.face[corner]);
+  }
+  if (nearest.face < 0) {
+    SurfaceIndex::Filter filter;
+    filter.region = piece_.region_filter(piece_.region[q]);
+    filter.hint = centre_face_[q];
+    nearest = piece_.index.nearest(centre, filter);
+    if (nearest.face < 0) nearest = piece_.index.nearest(centre);
+  }
+  centre_face_[q] = nearest.face;
+  const Vector3 below = nearest.face >= 0 ? input.normal(nearest.face) : Vector3(0, 0, 1);
+  frames_[q].reference = unit_or(around + 2 * below, below);
+}
+
+void Smoother::update_shape(int q) {
+  constexpr double kAgrees = 0.3, kLongest = 4.0, kLeastArea = 0.02;
+  const auto& v = piece_.mesh.quad(q);
+  const auto& p = piece_.mesh.positions;
+  QuadFrame& frame = frames_[q];
+  const Vector3 area = 0.5 * (p[v[2]] - p[v[0]]).cross(p[v[3]] - p[v[1]]);
+  const Vector3 own = unit_or(area, frame.reference);
+  frame.normal = own.dot(frame.reference) > kAgrees ? own : frame.reference;
+  const double u = 0.5 * ((p[v[0]] - p[v[1]]).norm() + (p[v[2]] - p[v[3]]).norm());
+  const double w = 0.5 * ((p[v[1]] - p[v[2]]).norm() + (p[v[3]] - p[v[0]]).norm());
+  const double ratio = u > 0 && w > 0 ? std::max(1 / kLongest, std::min(kLongest, w / u)) : 1.0;
+  frame.aspect = std::pow(ratio, options_.aspect_power);
+  own_area_[q] = std::max(area.dot(frame.normal), std::max(kLeastArea * u * w, 1e-6 * piece_.h * piece_.h));
+}
+
+void Smoother::update_area(int q) {
+  double sum = 0;
+  for (const int v : piece_.mesh.quad(q)) {
+    double around = 0;
+    for (const int other : piece_.mesh.quads_at(v)) around += own_area_[other];
+    sum += around / piece_.mesh.valence(v);
+  }
+  frames_[q].area = 0.25 * sum;
+}
+
+void Smoother::update_frames(bool with_references) {
+  std::vector<int> all(piece_.mesh.quad_count());
+  std::iota(all.begin(), all.end(), 0);
+  update_frames(all, with_references);
+}
+
+void Smoother::update_frames(const std::vector<int>& quads, bool with_references) {
+  frames_.resize(piece_.mesh.quad_count());
+  own_area_.resize(piece_.mesh.quad_count(), piece_.h * piece_.h);
+  centre_face_.resize(piece_.mesh.quad_count(), -1);
+  for (const int q : quads)
+    if (piece_.mesh.alive(q)) {
+      if (with_references) update_reference(q);
+      update_shape(q);
+    }
+  for (const int q : quads)
+    if (piece_.mesh.alive(q)) update_area(q);
+}
+
+double Smoother::signed_quality(int q) const {
+  const auto& v = piece_.mesh.quad(q);
+  const auto& p = piece_.mesh.positions;
+  double least = 1;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3 forth = p[v[(i + 1) & 3]] - p[v[i]], back = p[v[(i + 3) & 3]] - p[v[i]];
+    const double size = forth.norm() * back.norm();
+    least = std::min(least, size > 0 ? forth.cross(back).dot(frames_[q].normal) / size : -1.0);
+  }
+  return least;
+}
+
+bool Smoother::is_tangled() const {
+  constexpr double kSmall = 0.02;
+  const auto& p = piece_.mesh.positions;
+  for (int q = 0; q < piece_.mesh.quad_count(); ++q) {
+    if (!piece_.mesh.alive(q)) continue;
+    const auto& v = piece_.mesh.quad(q);
+    for (int i = 0; i < 4; ++i)
+      if ((p[v[(i + 1) & 3]] - p[v[i]]).cross(p[v[(i + 3) & 3]] - p[v[i]]).dot(frames_[q].normal) < kSmall * frames_[q].area)
+        return true;
+  }
+  return false;
+}
+
+Vector3 Smoother::vertex_normal(int v) const {
+  Vector3 sum = Vector3::Zero();
+  for (const int q : piece_.mesh.quads_at(v)) sum += frames_[q].normal;
+  return unit_or(sum, Vector3(0, 0, 1));
+}
+
+double Smoother::edge_size(int v) const {
+  double sum = 0;
+  for (const int q : piece_.mesh.quads_at(v)) sum += frames_[q].area;
+  return std::sqrt(sum / piece_.mesh.valence(v));
+}
+
+double Smoother::energy(int v, const Vector3& at) const {
+  const auto& p = piece_.mesh.positions;
+  double sum = 0;
+  for (const int q : piece_.mesh.quads_at(v)) {
+    const auto& corner = piece_.mesh.quad(q);
+    const QuadFrame& frame = frames_[q];
+    const int k = piece_.mesh.corner_of(q, v);
+    const double w = (k & 1) ? 1 / frame.aspect : frame.aspect, inverse = 1 / w;
+    const Vector3 forth = p[corner[(k + 1) & 3]] - at, back = p[corner[(k + 3) & 3]] - at;
+    const Vector3& far = p[corner[(k + 2) & 3]];
+    const Vector3 beyond_forth = far - p[corner[(k + 1) & 3]], beyond_back = far - p[corner[(k + 3) & 3]];
+    const double forth2 = forth.squaredNorm(), back2 = back.squaredNorm();
+    sum += CornerEnergy::value_of(w * forth2 + inverse * back2, frame.normal.dot(forth.cross(back)), frame.area, eps_);
+    sum += CornerEnergy::value_of(inverse * beyond_forth.squaredNorm() + w * forth2,
+                                  -frame.normal.dot(beyond_forth.cross(forth)), frame.area, eps_);
+    sum += CornerEnergy::value_of(inverse * back2 + w * beyond_back.squaredNorm(),
+                                  -frame.normal.dot(back.cross(beyond_back)), frame.area, eps_);
+  }
+  return sum;
+}
+
+double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const {
+  const auto& p = piece_.mesh.positions;
+  double sum = 0;
+  // length_slope: dL/dx; length_curvature: d2L/dx2, a multiple of the identity; area_slope: dD/dx (D is linear in x).
+  const auto add = [&](double length, double d, const QuadFrame& frame, const Vector3& length_slope, double length_curvature,
+                       const Vector3& area_slope) {
+    const CornerEnergy c(length, d, frame.area, eps_);
+    sum += c.value * c.value;
+    double l[2], a[2], g[2];
+    for (int i = 0; i < dimensions; ++i) {
+      l[i] = length_slope.dot(basis[i]);
+      a[i] = area_slope.dot(basis[i]);
+      g[i] = c.by_length * l[i] + c.by_area * a[i];
+      derivatives.gradient[i] += 2 * c.value * g[i];
+    }
+    const auto second = [&](int i, int j) {
+      const double h = (i == j ? c.by_length * length_curvature : 0.0) + c.by_length_area * (l[i] * a[j] + l[j] * a[i]) +
+                       c.by_area_area * a[i] * a[j];
+      return 2 * (c.value * h + g[i] * g[j]);
+    };
+    derivatives.hessian[0] += second(0, 0);
+    if (dimensions == 2) {
+      derivatives.hessian[1] += second(0, 1);
+      derivatives.hessian[2] += second(1, 1);
+    }
+  };
+  for (const int q : piece_.mesh.quads_at(v)) {
+    const auto& corner = piece_.mesh.quad(q);
+    const QuadFrame& frame = frames_[q];
+    const Vector3& n = frame.normal;
+    const int k = piece_.mesh.corner_of(q, v);
+    const double w = (k & 1) ? 1 / frame.aspect : frame.aspect, inverse = 1 / w;
+    const Vector3& far = p[corner[(k + 2) & 3]];
+    const Vector3 forth = p[corner[(k + 1) & 3]] - at, back = p[corner[(k + 3) & 3]] - at;
+    const Vector3 beyond_forth = far - p[corner[(k + 1) & 3]], beyond_back = far - p[corner[(k + 3) & 3]];
+    const double forth2 = forth.squaredNorm(), back2 = back.squaredNorm();
+    add(w * forth2 + inverse * back2, n.dot(forth.cross(back)), frame, -2 * (w * forth + inverse * back), 2 * (w + inverse),
+        n.cross(back - forth));
+    add(inverse * beyond_forth.squaredNorm() + w * forth2, -n.dot(beyond_forth.cross(forth)), frame, -2 * w * forth, 2 * w,
+        n.cross(beyond_forth));
+    add(inverse * back2 + w * beyond_back.squaredNorm(), -n.dot(back.cross(beyond_back)), frame, -2 * inverse * back,
+        2 * inverse, -n.cross(beyond_back));
+  }
+  return sum;
+}
+
+bool Smoother::may_slide(int v) const {
+  const int curve = piece_.mesh.anchor(v);
+  return curve >= 0 && curve < static_cast<int>(piece_.curves.size()) && piece_.curves[curve].length() > 0;
+}
+
+double Smoother::move(int v) {
+  if (piece_.mesh.valence(v) == 0) return 0;
+  const double size = edge_size(v);
+  if (!(size > 0)) return 0;
+  if (piece_.mesh.is_free(v)) return piece_.face[v] >= 0 ? move_free(v, size) / size : 0;
+  if (piece_.mesh.kind(v) == VertexKind::kCurve && may_slide(v)) return move_on_curve(v, size) / size;
+  return 0;
+}
+
+double Smoother::move_free(int v, double size) {
+  const Vector3 start = piece_.mesh.positions[v], normal = vertex_normal(v);
+  const Vector3 axis = std::abs(normal.x()) < 0.7 ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
+  Vector3 basis[2];
+  basis[0] = normal.cross(axis).normalized();
+  basis[1] = normal.cross(basis[0]);
+  Derivatives d;
+  const double before = energy(v, start, basis, 2, d);
+  double h00 = d.hessian[0], h01 = d.hessian[1], h11 = d.hessian[2];
+  const double trace = h00 + h11, half_gap = std::hypot(0.5 * (h00 - h11), h01);
+  const double least = 0.5 * trace - half_gap, most = std::max(std::abs(least), std::abs(0.5 * trace + half_gap));
+  if (least < 1e-3 * most) {
+    const double shift = 1e-3 * most - least;
+    h00 += shift;
+    h11 += shift;
+  }
+  const double determinant = h00 * h11 - h01 * h01;
+  Vector3 step = -((h11 * d.gradient[0] - h01 * d.gradient[1]) * basis[0] + (h00 * d.gradient[1] - h01 * d.gradient[0]) * basis[1]) /
+                 determinant;
+  const double length = step.norm();
+  if (!std::isfinite(length) || length < 1e-7 * size) return 0;
+  if (length > kLongestStep * size) step *= kLongestStep * size / length;
+  for (int k = 0; k < kBacktracks; ++k) {
+    const SurfacePoint target = piece_.index.walk(start + step, piece_.face[v]);
+    if (target.face >= 0 && energy(v, target.position) < before) {
+      piece_.mesh.positions[v] = target.position;
+      piece_.face[v] = target.face;
+      return (target.position - start).norm();
+    }
+    step *= kBacktrack;
+  }
+  return 0;
+}
+
+double Smoother::move_on_curve(int v, double size) {
+  constexpr double kPartOfGap = 0.8;
+  const CurveGeometry& curve = piece_.curves[piece_.mesh.anchor(v)];
+  const Vector3 start = piece_.mesh.positions[v];
+  const double arc = piece_.arc[v];
+  const Vector3 tangent = curve.tangent(arc);
+  Derivatives d;
+  double before = energy(v, start, &tangent, 1, d);
+  const double density = std::max(1e-12, curve.weight_density(arc));
+  const double ahead = piece_.weighted_gap(v, 1) / density, behind = piece_.weighted_gap(v, -1) / density;
+  const double stiffness = options_.chord_spring / (size * size);
+  const auto spring = [&](double t) {
+    return stiffness * ((ahead - t) * (ahead - t) + (behind + t) * (behind + t));
+  };
+  before += spring(0);
+  const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead);
+  double hessian = std::abs(d.hessian[0] + 4 * stiffness);
+  if (!(hessian > 0)) return 0;
+  double t = -gradient / hessian;
+  if (!std::isfinite(t) || std::abs(t) < 1e-7 * size) return 0;
+  t = std::max(-kLongestStep * size, std::min(kLongestStep * size, t));
+  t = std::max(-kPartOfGap * piece_.gap(v, -1), std::min(kPartOfGap * piece_.gap(v, 1), t));
+  for (int k = 0; k < kBacktracks; ++k) {
+    const double target = curve.normalized(arc + t);
+    const Vector3 position = curve.at(target);
+    if (energy(v, position) + spring(t) < before) {
+      piece_.arc[v] = target;
+      piece_.mesh.positions[v] = position;
+      return (position - start).norm();
+    }
+    t *= kBacktrack;
+  }
+  return 0;
+}
+
+void Smoother::relax(const std::vector<int>& vertices, int sweeps, double eps) {
+  const double kept = eps_;
+  eps_ = eps;
+  std::vector<int> quads;
+  for (const int v : vertices) quads.insert(quads.end(), piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
+  std::sort(quads.begin(), quads.end());
+  quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    update_frames(quads, sweep == 0);
+    double largest = 0;
+    for (const int v : vertices) largest = std::max(largest, move(v));
+    if (largest < options_.still) break;
+  }
+  update_frames(quads, false);
+  eps_ = kept;
+}
+
+void Smoother::smooth(int sweeps, const RunContext& context) {
+  const int n = piece_.mesh.vertex_count();
+  std::vector<char> active(n, 1), next_active(n, 0);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    context.checkpoint(static_cast<double>(sweep) / sweeps);
+    update_frames(sweep == 0 || sweep == 4 || sweep == 12);
+    if (sweep == 0 || sweep == 4 || sweep == 8) {
+      const bool tangled = is_tangled();
+      eps_ = !tangled ? kSmallestEps : sweep == 0 ? 0.3 : sweep == 4 ? 0.1 : 0.03;
+      if (tangled) std::fill(active.begin(), active.end(), 1);
+    }
+    std::fill(next_active.begin(), next_active.end(), 0);
+    bool any = false;
+    for (int v = 0; v < n; ++v) {
+      if ((v & 4095) == 0) context.checkpoint(static_cast<double>(sweep) / sweeps);
+      if (!active[v] || !(move(v) > options_.still)) continue;
+      any = true;
+      for (const int q : piece_.mesh.quads_at(v))
+        for (const int w : piece_.mesh.quad(q)) next_active[w] = 1;
+    }
+    if (!any && sweep > 8) break;
+    active.swap(next_active);
+  }
+  eps_ = kSmallestEps;
+  update_frames(false);
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/improve/corner_energy.h"
+#include "hybrid_quad/improve/workpiece.h"
+
+namespace hybrid_quad {
+
+struct SmootherOptions {
+  double chord_spring = 10;      ///< pull of curve vertices to equal chord error
+  double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
+  double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
+};
+
+/// Moves vertices one at a time by Newton steps on the corner energy of the quads around (Gauss-Seidel in vertex order),
+/// free ones over the input surface, curve ones along their curves.
+class Smoother {
+ public:
+  Smoother(Workpiece& piece, const SmootherOptions& options);
+
+  /// Sweeps over all vertices; the regularisation shrinks as the mesh untangles.
+  void smooth(int sweeps, const RunContext& context);
+  /// Sweeps over some vertices (ascending) with a given regularisation, everything else fixed.
+  void relax(const std::vector<int>& vertices, int sweeps, double eps);
+
+  /// Frames of all quads / of some, from the positions as they are.
+  void update_frames(bool with_references);
+  void update_frames(const std::vector<int>& quads, bool with_references);
+  const QuadFrame& frame(int q) const { return frames_[q]; }
+
+  /// Smallest sine over the corners of q, signed by the frame's normal: negative where q is folded against the input.
+  double signed_quality(int q) const;
+  Vector3 vertex_normal(int v) const;
+
+ private:
+  struct Derivatives;
+  void update_reference(int q);
+  void update_shape(int q);
+  void update_area(int q);
+  bool is_tangled() const;
+  double energy(int v, const Vector3& at) const;
+  double energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const;
+  double edge_size(int v) const;
+  double move(int v);
+  double move_free(int v, double size);
+  double move_on_curve(int v, double size);
+  bool may_slide(int v) const;
+
+  Workpiece& piece_;
+  SmootherOptions options_;
+  double eps_ = 1e-3;
+  std::vector<QuadFrame> frames_;
+  std::vector<double> own_area_;
+  std::vector<int> centre_face_;
+};
+
+}  // namespace hybrid_quad

@@ -1,0 +1,389 @@
+#include "hybrid_quad/improve/valence_moves.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kStraight = 140 * M_PI / 180;
+constexpr double kWorthIt = 1e-9;
+
+/// Quads of the sector that begins at the feature edge to `start`, counterclockwise; 0 where no quad is there.
+int sector_size(const EditMesh& mesh, int v, int start) {
+  int q = -1;
+  for (const int other : mesh.quads_at(v))
+    if (mesh.quad(other)[(mesh.corner_of(other, v) + 1) & 3] == start) q = other;
+  int count = 0;
+  for (int left = mesh.valence(v); q >= 0 && left > 0; --left) {
+    ++count;
+    const int side = (mesh.corner_of(q, v) + 3) & 3;
+    if (mesh.is_feature(v, mesh.quad(q)[side])) break;
+    q = mesh.across(q, side);
+  }
+  return count;
+}
+
+struct Move {
+  enum Kind : char { kCollapse, kRotateBack, kRotateForth };
+  Kind kind;
+  int quad;
+  int corner;  ///< collapse: a corner of the diagonal; rotation: the side
+};
+
+/// Vertices whose valence a move changed.
+struct Changed {
+  std::array<int, 4> vertex{-1, -1, -1, -1};
+  double cost(const EditMesh& mesh) const {
+    double sum = 0;
+    for (const int v : vertex) sum += valence_cost(mesh, v);
+    return sum;
+  }
+};
+
+/// The two ends of a collapse: the vertex that goes is always one inside that no feature holds.
+bool collapse_ends(const EditMesh& mesh, const Move& move, int* kept, int* gone) {
+  const auto& q = mesh.quad(move.quad);
+  *kept = q[move.corner];
+  *gone = q[(move.corner + 2) & 3];
+  const auto removable = [&](int v) { return mesh.is_free(v) && !mesh.on_boundary(v) && mesh.feature_links(v).empty(); };
+  if (!removable(*gone)) std::swap(*kept, *gone);
+  return removable(*gone);
+}
+
+bool neighbours(const EditMesh& mesh, int v, int w) { return v == w || mesh.has_edge(v, w); }
+
+bool may_collapse(const EditMesh& mesh, const Move& move, Changed* changed) {
+  int kept, gone;
+  if (!collapse_ends(mesh, move, &kept, &gone)) return false;
+  const auto& corners = mesh.quad(move.quad);
+  const int a = corners[(move.corner + 1) & 3], b = corners[(move.corner + 3) & 3];
+  if (mesh.valence(a) <= mesh.least_valence(a) || mesh.valence(b) <= mesh.least_valence(b)) return false;
+  if (mesh.is_free(kept) && mesh.anchor(kept) != mesh.anchor(gone)) return false;
+  for (const int q : mesh.quads_at(gone)) {
+    if (q != move.quad && mesh.corner_of(q, kept) >= 0) return false;
+    const int i = mesh.corner_of(q, gone);
+    for (const int w : {mesh.quad(q)[(i + 1) & 3], mesh.quad(q)[(i + 3) & 3]})
+      if (w != a && w != b && neighbours(mesh, w, kept)) return false;
+  }
+  changed->vertex = {kept, gone, a, b};
+  return true;
+}
+
+void collapse(EditMesh& mesh, const Move& move) {
+  int kept, gone;
+  collapse_ends(mesh, move, &kept, &gone);
+  const std::vector<int> around = mesh.quads_at(gone);
+  mesh.set_quad(move.quad, mesh.quad(move.quad), false);
+  for (const int q : around) {
+    if (q == move.quad) continue;
+    EditMesh::Quad corners = mesh.quad(q);
+    corners[mesh.corner_of(q, gone)] = kept;
+    mesh.set_quad(q, corners, true);
+  }
+}
+
+/// The hexagon a b x y c d of two quads (b, c, d, a) and (c, b, x, y) whose common edge b c turns.
+struct Hexagon {
+  int a, b, x, y, c, d, other;
+};
+
+bool hexagon_of(const EditMesh& mesh, const Move& move, Hexagon* hexagon) {
+  const auto& q = mesh.quad(move.quad);
+  const int other = mesh.across(move.quad, move.corner);
+  if (other < 0) return false;
+  const int b = q[move.corner], c = q[(move.corner + 1) & 3];
+  const int k = mesh.corner_of(other, c);
+  const auto& o = mesh.quad(other);
+  *hexagon = {q[(move.corner + 3) & 3], b, o[(k + 2) & 3], o[(k + 3) & 3], c, q[(move.corner + 2) & 3], other};
+  return true;
+}
+
+bool may_rotate(const EditMesh& mesh, const Move& move, Changed* changed) {
+  const auto& q = mesh.quad(move.quad);
+  const int b = q[move.corner], c = q[(move.corner + 1) & 3];
+  if (mesh.valence(b) <= mesh.least_valence(b) || mesh.valence(c) <= mesh.least_valence(c)) return false;
+  if (mesh.is_feature(b, c)) return false;
+  Hexagon hexagon;
+  if (!hexagon_of(mesh, move, &hexagon)) return false;
+  const int from = move.kind == Move::kRotateBack ? hexagon.a : hexagon.x;
+  const int to = move.kind == Move::kRotateBack ? hexagon.y : hexagon.d;
+  if (neighbours(mesh, from, to)) return false;
+  changed->vertex = {b, c, from, to};
+  return true;
+}
+
+void rotate(EditMesh& mesh, const Move& move) {
+  Hexagon h;
+  hexagon_of(mesh, move, &h);
+  const bool backwards = move.kind == Move::kRotateBack;
+  const EditMesh::Quad first = backwards ? EditMesh::Quad{h.a, h.b, h.x, h.y} : EditMesh::Quad{h.x, h.y, h.c, h.d};
+  const EditMesh::Quad second = backwards ? EditMesh::Quad{h.a, h.y, h.c, h.d} : EditMesh::Quad{h.x, h.d, h.a, h.b};
+  mesh.set_quad(move.quad, first, true);
+  mesh.set_quad(h.other, second, true);
+}
+
+bool may_move(const EditMesh& mesh, const Move& move, Changed* changed) {
+  if (!mesh.alive(move.quad)) return false;
+  return move.kind == Move::kCollapse ? may_collapse(mesh, move, changed) : may_rotate(mesh, move, changed);
+}
+
+void make_move(EditMesh& mesh, const Move& move) {
+  if (move.kind == Move::kCollapse)
+    collapse(mesh, move);
+  else
+    rotate(mesh, move);
+}
+
+struct Sequence {
+  double cost = 0;  ///< change of the valence cost, and a little for every move
+  int length = 0;
+  std::array<Move, 3> moves{};
+};
+
+struct SearchLimits {
+  int depth;
+  double slack;      ///< how much worse than the start a beginning of a sequence may be
+  double least_gain;
+  int trials;
+  int beam;
+};
+
+/// Best-first search for short sequences of moves around a vertex that lower the valence cost.
+class SequenceSearch {
+ public:
+  explicit SequenceSearch(EditMesh& mesh) : mesh_(mesh) {}
+
+  /// The best sequences, best first; the mesh is as before.
+  const std::vector<Sequence>& run(int v, const SearchLimits& limits) {
+    limits_ = limits;
+    trials_left_ = limits.trials;
+    best_.clear();
+    extend({v}, Sequence{});
+    return best_;
+  }
+
+ private:
+  static constexpr std::size_t kKept = 3;
+
+  void extend(const std::vector<int>& seeds, const Sequence& so_far) {
+    struct Candidate {
+      Sequence sequence;
+      Changed changed;
+    };
+    std::vector<Candidate> candidates;
+    for (const Move& move : moves_around(seeds)) {
+      if (--trials_left_ < 0) break;
+      Changed changed;
+      if (!may_move(mesh_, move, &changed)) continue;
+      const double before = changed.cost(mesh_);
+      const std::size_t mark = mesh_.mark();
+      make_move(mesh_, move);
+      const double after = changed.cost(mesh_);
+      mesh_.undo_to(mark);
+      Sequence longer = so_far;
+      longer.cost += after - before + (move.kind == Move::kCollapse ? 0.02 : 0.01);
+      longer.moves[longer.length++] = move;
+      remember(longer);
+      if (longer.length < limits_.depth && longer.cost < limits_.slack) candidates.push_back({longer, changed});
+    }
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
+      return x.sequence.cost < y.sequence.cost;
+    });
+    if (static_cast<int>(candidates.size()) > limits_.beam) candidates.resize(limits_.beam);
+    for (const Candidate& candidate : candidates) {
+      const std::size_t mark = mesh_.mark();
+      make_move(mesh_, candidate.sequence.moves[candidate.sequence.length - 1]);
+      std::vector<int> costly;
+      for (const int v : candidate.changed.vertex)
+        if (mesh_.valence(v) > 0 && valence_cost(mesh_, v) > 0.5) costly.push_back(v);
+      if (!costly.empty()) extend(costly, candidate.sequence);
+      mesh_.undo_to(mark);
+    }
+  }
+
+  std::vector<Move> moves_around(const std::vector<int>& seeds) const {
+    std::vector<int> quads;
+    for (const int v : seeds) quads.insert(quads.end(), mesh_.quads_at(v).begin(), mesh_.quads_at(v).end());
+    std::sort(quads.begin(), quads.end());
+    quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
+    std::vector<Move> moves;
+    for (const int q : quads) {
+      for (int i = 0; i < 2; ++i) moves.push_back({Move::kCollapse, q, i});
+      for (int i = 0; i < 4; ++i) {
+        moves.push_back({Move::kRotateBack, q, i});
+        moves.push_back({Move::kRotateForth, q, i});
+      }
+    }
+    return moves;
+  }
+
+  void remember(const Sequence& sequence) {
+    if (sequence.cost > -limits_.least_gain) return;
+    const auto place = std::find_if(best_.begin(), best_.end(),
+                                    [&](const Sequence& other) { return sequence.cost < other.cost - kWorthIt; });
+    best_.insert(place, sequence);
+    if (best_.size() > kKept) best_.pop_back();
+  }
+
+  EditMesh& mesh_;
+  SearchLimits limits_{};
+  int trials_left_ = 0;
+  std::vector<Sequence> best_;
+};
+
+void make_sequence(Workpiece& piece, const Sequence& sequence, bool with_positions) {
+  for (int i = 0; i < sequence.length; ++i) {
+    const Move& move = sequence.moves[i];
+    int kept, gone;
+    if (with_positions && move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone) &&
+        piece.mesh.is_free(kept) && piece.face[kept] >= 0) {
+      const Vector3 middle = 0.5 * (piece.mesh.positions[kept] + piece.mesh.positions[gone]);
+      const SurfacePoint point = piece.index.walk(middle, piece.face[kept]);
+      if (point.face >= 0) {
+        piece.face[kept] = point.face;
+        piece.mesh.positions[kept] = point.position;
+      }
+    }
+    make_move(piece.mesh, move);
+  }
+}
+
+/// All vertices of the quads that a sequence replaces.
+std::vector<int> touched_by(Workpiece& piece, const Sequence& sequence) {
+  const std::size_t mark = piece.mesh.mark();
+  std::vector<int> vertices;
+  const auto add_around = [&](const Move& move) {
+    int kept, gone;
+    Hexagon hexagon;
+    std::vector<int> quads;
+    if (move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone))
+      quads = piece.mesh.quads_at(gone);
+    else if (move.kind != Move::kCollapse && hexagon_of(piece.mesh, move, &hexagon))
+      quads = {move.quad, hexagon.other};
+    for (const int q : quads) vertices.insert(vertices.end(), piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
+  };
+  for (int i = 0; i < sequence.length; ++i) {
+    add_around(sequence.moves[i]);
+    make_move(piece.mesh, sequence.moves[i]);
+  }
+  piece.mesh.undo_to(mark);
+  return vertices;
+}
+
+/// Tries the best sequences around v until one stays. \returns its length, 0 if none does
+int improve_around(Workpiece& piece, Smoother& smoother, SequenceSearch& search, int v, const SearchLimits& limits) {
+  constexpr double kGoodEnough = 0.5;
+  const std::vector<Sequence> sequences = search.run(v, limits);
+  for (const Sequence& sequence : sequences) {
+    Trial trial(piece, smoother, touched_by(piece, sequence));
+    make_sequence(piece, sequence, true);
+    if (trial.keep(kGoodEnough)) return sequence.length;
+  }
+  return 0;
+}
+
+}  // namespace
+
+double valence_cost(const EditMesh& mesh, int v) {
+  const int n = mesh.valence(v);
+  if (n == 0) return 0;
+  if (mesh.feature_links(v).empty()) {
+    const double difference = n - 4;
+    return difference * difference + (n < 3 ? 20 : 0) + (n > 5 ? 2 * (n - 5) : 0);
+  }
+  double cost = 0;
+  for (const EditMesh::FeatureLink& link : mesh.feature_links(v)) {
+    const int size = sector_size(mesh, v, link.vertex);
+    if (size == 0) continue;
+    const double difference = size - link.ideal;
+    cost += difference * difference;
+    if (link.angle > kStraight * size) cost += 20;
+  }
+  return cost;
+}
+
+bool has_straight_corner(const EditMesh& mesh, int v) {
+  if (mesh.valence(v) == 0) return false;
+  if (mesh.feature_links(v).empty()) return mesh.valence(v) < 3;
+  for (const EditMesh::FeatureLink& link : mesh.feature_links(v)) {
+    const int size = sector_size(mesh, v, link.vertex);
+    if (size > 0 && link.angle > kStraight * size) return true;
+  }
+  return false;
+}
+
+Trial::Trial(Workpiece& piece, Smoother& smoother, std::vector<int> vertices)
+    : piece_(piece), smoother_(smoother), mark_(piece.mesh.mark()), vertices_(std::move(vertices)) {
+  std::sort(vertices_.begin(), vertices_.end());
+  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  for (const int v : vertices_) {
+    positions_.push_back(piece_.mesh.positions[v]);
+    faces_.push_back(piece_.face[v]);
+    arcs_.push_back(piece_.arc[v]);
+  }
+  collect_quads();
+  before_ = worst();
+}
+
+void Trial::collect_quads() {
+  quads_.clear();
+  for (const int v : vertices_) quads_.insert(quads_.end(), piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
+  std::sort(quads_.begin(), quads_.end());
+  quads_.erase(std::unique(quads_.begin(), quads_.end()), quads_.end());
+}
+
+double Trial::worst() const {
+  double least = 1;
+  for (const int q : quads_) least = std::min(least, smoother_.signed_quality(q));
+  return least;
+}
+
+bool Trial::keep(double good_enough) {
+  const int old_count = static_cast<int>(positions_.size());
+  std::vector<int> inside;
+  for (const int v : vertices_)
+    if (piece_.mesh.valence(v) > 0) inside.push_back(v);
+  smoother_.relax(inside, 2, 0.1);
+  smoother_.relax(inside, 3, 1e-3);
+  collect_quads();
+  if (worst() >= std::min(before_, good_enough)) {
+    piece_.mesh.forget_log();
+    return true;
+  }
+  piece_.mesh.undo_to(mark_);
+  for (int i = 0; i < old_count; ++i) {
+    piece_.mesh.positions[vertices_[i]] = positions_[i];
+    piece_.face[vertices_[i]] = faces_[i];
+    piece_.arc[vertices_[i]] = arcs_[i];
+  }
+  collect_quads();
+  smoother_.update_frames(quads_, true);
+  return false;
+}
+
+int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr SearchLimits kStraightLimits{3, 30, 2.0, 6000, 6};
+  constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5};
+  constexpr int kPasses = 2;
+  SequenceSearch search(piece.mesh);
+  int moves = 0;
+  const int n = piece.mesh.vertex_count();
+  for (int v = 0; v < n; ++v) {
+    if ((v & 255) == 0) context.checkpoint(0.3 * v / n);
+    if (has_straight_corner(piece.mesh, v)) moves += improve_around(piece, smoother, search, v, kStraightLimits);
+  }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    int made = 0;
+    for (int v = 0; v < n; ++v) {
+      if ((v & 255) == 0) context.checkpoint(0.3 + 0.35 * (pass + static_cast<double>(v) / n));
+      if (valence_cost(piece.mesh, v) > 0.5) made += improve_around(piece, smoother, search, v, kLimits);
+    }
+    moves += made;
+    if (made == 0) break;
+  }
+  return moves;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/workpiece.h"
+
+namespace hybrid_quad {
+
+/// How far the number of quads at a vertex is from what it should be: the squared difference to four inside; on a
+/// feature, sector by sector, to the number that the sector's angle asks for. A sector whose quads would be nearly
+/// straight (over 140 degrees each) costs 20 more, a vertex inside with fewer than three quads too.
+double valence_cost(const EditMesh& mesh, int v);
+/// True for a vertex one of whose quads cannot have a good shape whatever its vertices do.
+bool has_straight_corner(const EditMesh& mesh, int v);
+
+/// Lowers the valence cost by sequences of diagonal collapses and edge rotations, each sequence kept only if the quads
+/// around are not worse afterwards (locally smoothed). First where quads are straight at a feature, then around every
+/// irregular vertex.
+/// \returns number of moves made
+int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context);
+
+/// A change of connectivity on trial: what is around it, and how to get back. Take the trial, change the mesh, then
+/// `keep`: it relaxes the vertices around and undoes everything if their quads became worse.
+class Trial {
+ public:
+  Trial(Workpiece& piece, Smoother& smoother, std::vector<int> vertices);
+  /// \returns whether the change stays. \param good_enough  a worst quad of this quality is accepted whatever it was
+  bool keep(double good_enough);
+
+ private:
+  double worst() const;
+  void collect_quads();
+
+  Workpiece& piece_;
+  Smoother& smoother_;
+  std::size_t mark_;
+  std::vector<int> vertices_, quads_;
+  std::vector<Vector3> positions_;
+  std::vector<int> faces_;
+  std::vector<double> arcs_;
+  double before_;
+};
+
+}  // namespace hybrid_quad
