@@ -1,0 +1,159 @@
+#include "hybrid_quad/regular_quads/curve_coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hybrid_quad {
+
+namespace {
+
+/// Where an edge of a curve lies in the mesh: a half-edge and whether it runs along the curve or against it.
+struct CurveEdge {
+  int halfedge = -1;
+  bool along = true;
+};
+
+CurveEdge find_edge(const TriangleMesh& mesh, int a, int b) {
+  for (const int start : {a, b}) {
+    const int other = start == a ? b : a;
+    int h = mesh.outgoing(start);
+    const int first = h;
+    while (h >= 0) {
+      if (mesh.to(h) == other) return {h, start == a};
+      h = mesh.rotate_ccw(h);
+      if (h == first) break;
+    }
+  }
+  throw InternalError("regular quads", "a feature curve does not follow mesh edges");
+}
+
+std::int64_t round_to_grid(std::int64_t x) {
+  const std::int64_t half = kGridUnit / 2;
+  const std::int64_t shifted = x + half;
+  return (shifted >= 0 ? shifted / kGridUnit : -((-shifted + kGridUnit - 1) / kGridUnit)) * kGridUnit;
+}
+
+class CurveBuilder {
+ public:
+  CurveBuilder(const WorkingSurface& surface, const FrameField& frames, const SpanningParameterization& param,
+               CurveCoordinates& out)
+      : surface_(surface), frames_(frames), param_(param), out_(out) {}
+
+  void build(int id) {
+    const FeatureCurve& curve = surface_.features.curves[id];
+    const int edges = static_cast<int>(curve.vertices.size()) - 1;
+    auto& result = out_.curves[id];
+    arc_length_.assign(edges + 1, 0.0);
+    edges_.resize(edges);
+    for (int i = 0; i < edges; ++i) {
+      edges_[i] = find_edge(surface_.mesh, curve.vertices[i], curve.vertices[i + 1]);
+      arc_length_[i + 1] = arc_length_[i] + surface_.mesh.edge_length(edges_[i].halfedge);
+      out_.halfedge_index[edges_[i].halfedge] = i;
+      const int o = surface_.mesh.opposite(edges_[i].halfedge);
+      if (o >= 0) out_.halfedge_index[o] = i;
+    }
+    result.position.assign(edges + 1, 0);
+    start_of_curve(curve, result);
+    for (int i = 0; i < edges; ++i) result.position[i + 1] = result.position[i] + tangential(edges_[i], param_.halfedge_uv);
+    make_monotone(curve, result);
+  }
+
+ private:
+  /// The axis (0 = u, 1 = v) that the curve follows in the gauge of the edge's face, and its sense along the curve.
+  std::pair<int, int> axis_of(const CurveEdge& e) const {
+    const Vector2 asked = frames_.grid_vector(surface_.mesh, e.halfedge) * (e.along ? 1.0 : -1.0);
+    const int axis = std::abs(asked[0]) >= std::abs(asked[1]) ? 0 : 1;
+    return {axis, asked[axis] >= 0 ? 1 : -1};
+  }
+
+  std::int64_t tangential(const CurveEdge& e, const std::vector<GridVector>& halfedge_uv) const {
+    const auto [axis, sense] = axis_of(e);
+    return halfedge_uv[e.halfedge][axis] * sense * (e.along ? 1 : -1);
+  }
+
+  void start_of_curve(const FeatureCurve& curve, CurveCoordinates::Curve& result) const {
+    const CurveEdge& e = edges_[0];
+    const auto [axis, sense] = axis_of(e);
+    const GridVector uv = param_.corner_uv[e.along ? e.halfedge : TriangleMesh::next(e.halfedge)];
+    result.position[0] = uv[axis] * sense;
+    if (!curve.closed) result.position[0] = round_to_grid(result.position[0]);
+    result.parity = static_cast<int>((round_to_grid(uv[1 - axis]) / kGridUnit) & 1);
+  }
+
+  void make_monotone(const FeatureCurve& curve, CurveCoordinates::Curve& result) {
+    auto& s = result.position;
+    const int n = static_cast<int>(s.size()) - 1;
+    std::int64_t last = s[0] + round_to_grid(s[n] - s[0]);
+    const std::int64_t least = (curve.closed ? 4 : 1) * kGridUnit;
+    if (last - s[0] < least) {
+      const bool odd = ((last - s[0]) / kGridUnit) & 1;
+      const std::int64_t count = curve.closed ? 4 : (odd ? 1 : 2);
+      last = s[0] + count * kGridUnit;
+      ++out_.altered_counts;
+      interpolate(s, 0, n, last);
+      return;
+    }
+    const bool end_is_sound = last == s[n];
+    s[n] = last;
+    // A vertex is sound where everything before it is smaller and everything after it is larger.
+    std::vector<char> sound(n + 1, 1);
+    std::int64_t bound = s[0];
+    for (int i = 1; i < n; ++i) {
+      if (s[i] <= bound || s[i] >= last) sound[i] = 0;
+      bound = std::max(bound, std::min(s[i], last));
+    }
+    bound = last;
+    for (int i = n - 1; i > 0; --i) {
+      if (s[i] >= bound) sound[i] = 0;
+      bound = std::min(bound, std::max(s[i], s[0]));
+    }
+    for (int i = 0; i < n;) {
+      int j = i + 1;
+      while (!sound[j]) ++j;
+      const bool exact = j == i + 1 && (j < n || end_is_sound);
+      if (!exact) interpolate(s, i, j, s[j]);
+      i = j;
+    }
+  }
+
+  /// Spreads s[i]..end over the vertices i..j by arc length and marks the edges between them.
+  void interpolate(std::vector<std::int64_t>& s, int i, int j, std::int64_t end) {
+    const std::int64_t begin = s[i];
+    const double length = std::max(arc_length_[j] - arc_length_[i], 1e-300);
+    for (int k = i + 1; k < j; ++k) {
+      const double t = (arc_length_[k] - arc_length_[i]) / length;
+      const auto wish = begin + static_cast<std::int64_t>(std::llround(t * static_cast<double>(end - begin)));
+      s[k] = std::min(std::max(wish, s[k - 1] + 1), end - (j - k));
+    }
+    s[j] = end;
+    for (int k = i; k < j; ++k) {
+      ++out_.altered_edges;
+      const int h = edges_[k].halfedge, o = surface_.mesh.opposite(h);
+      out_.is_altered[h] = 1;
+      if (o >= 0) out_.is_altered[o] = 1;
+    }
+  }
+
+  const WorkingSurface& surface_;
+  const FrameField& frames_;
+  const SpanningParameterization& param_;
+  CurveCoordinates& out_;
+  std::vector<CurveEdge> edges_;
+  std::vector<double> arc_length_;
+};
+
+}  // namespace
+
+CurveCoordinates build_curve_coordinates(const WorkingSurface& surface, const FrameField& frames,
+                                         const SpanningParameterization& param) {
+  CurveCoordinates out;
+  out.curves.resize(surface.features.curves.size());
+  out.halfedge_index.assign(surface.mesh.halfedge_count(), -1);
+  out.is_altered.assign(surface.mesh.halfedge_count(), 0);
+  CurveBuilder builder(surface, frames, param, out);
+  for (int c = 0; c < static_cast<int>(out.curves.size()); ++c) builder.build(c);
+  return out;
+}
+
+}  // namespace hybrid_quad

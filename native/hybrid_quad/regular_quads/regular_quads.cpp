@@ -1,0 +1,118 @@
+#include "hybrid_quad/regular_quads/regular_quads.h"
+
+#include <string>
+
+namespace hybrid_quad {
+
+namespace {
+
+/// Pieces joined across everything that is not an integer line or a feature, in order of their first piece.
+struct CellComponents {
+  std::vector<int> members;  ///< pieces, one component after the other
+  std::vector<int> begin;
+  std::vector<int> component_of;
+};
+
+CellComponents join_pieces(const GridOverlay& overlay) {
+  CellComponents out;
+  out.component_of.assign(overlay.piece_count(), -1);
+  out.begin.push_back(0);
+  for (int seed = 0; seed < overlay.piece_count(); ++seed) {
+    if (out.component_of[seed] >= 0 || !overlay.piece_regular[seed]) continue;
+    const int id = static_cast<int>(out.begin.size()) - 1;
+    out.component_of[seed] = id;
+    out.members.push_back(seed);
+    for (std::size_t i = out.begin.back(); i < out.members.size(); ++i) {
+      const int piece = out.members[i];
+      for (int k = overlay.piece_begin[piece]; k < overlay.piece_begin[piece + 1]; ++k) {
+        const int o = overlay.opposite[k];
+        if (o < 0 || overlay.on_isoline[k]) continue;
+        const int neighbour = overlay.piece_of[o];
+        if (!overlay.piece_regular[neighbour] || out.component_of[neighbour] >= 0) continue;
+        out.component_of[neighbour] = id;
+        out.members.push_back(neighbour);
+      }
+    }
+    out.begin.push_back(static_cast<int>(out.members.size()));
+  }
+  return out;
+}
+
+/// The four sides of a component if it is one whole cell of the grid.
+/// \return false if it is not
+bool sides_of_cell(const GridOverlay& overlay, const CellComponents& cells, int id, std::array<int, 4>& side) {
+  int border = -1, border_count = 0, inner_halfedges = 0;
+  for (int i = cells.begin[id]; i < cells.begin[id + 1]; ++i) {
+    const int piece = cells.members[i];
+    for (int k = overlay.piece_begin[piece]; k < overlay.piece_begin[piece + 1]; ++k) {
+      if (overlay.on_isoline[k]) {
+        ++border_count;
+        if (overlay.vertices[overlay.origin[k]].grid_sign != 0) border = k;
+        continue;
+      }
+      ++inner_halfedges;
+      const int o = overlay.opposite[k];
+      if (o < 0 || cells.component_of[overlay.piece_of[o]] != id) return false;
+    }
+  }
+  if (border < 0) return false;
+  const auto inside = [&](int piece) { return cells.component_of[piece] == id; };
+  int corners = 0, walked = 0, sign = 0, curve = -1, k = border;
+  do {
+    const int s = overlay.vertices[overlay.origin[k]].grid_sign;
+    if (s != 0) {
+      if (corners == 4 || s == sign) return false;
+      side[corners++] = k;
+      sign = s;
+      curve = overlay.curve[k];
+    } else if (overlay.curve[k] != curve) {
+      return false;
+    }
+    ++walked;
+    k = next_border_halfedge(overlay, k, inside);
+  } while (k != border && walked <= border_count);
+  // One loop that sees all border half-edges, four grid points on it; without a cone inside (they are grid points) a
+  // flat region with four right angles and one border is a disk.
+  return corners == 4 && walked == border_count && inner_halfedges % 2 == 0;
+}
+
+}  // namespace
+
+RegularQuads extract_regular_quads(const WorkingSurface& surface, const FrameField& frames,
+                                   const SpanningParameterization& param, const RunContext& context) {
+  RegularQuads out;
+  out.overlay = build_grid_overlay(surface, param, build_curve_coordinates(surface, frames, param), context);
+  const GridOverlay& overlay = out.overlay;
+  const CellComponents cells = join_pieces(overlay);
+  out.piece_cell.assign(overlay.piece_count(), -1);
+  for (int id = 0; id + 1 < static_cast<int>(cells.begin.size()); ++id) {
+    std::array<int, 4> side;
+    if (!sides_of_cell(overlay, cells, id, side)) continue;
+    for (int i = cells.begin[id]; i < cells.begin[id + 1]; ++i)
+      out.piece_cell[cells.members[i]] = static_cast<int>(out.side.size());
+    out.side.push_back(side);
+  }
+  return out;
+}
+
+std::vector<std::string> violations_of(const RegularQuads& quads) {
+  std::vector<std::string> out;
+  const GridOverlay& overlay = quads.overlay;
+  for (std::size_t k = 0; k < overlay.origin.size(); ++k) {
+    const int o = overlay.opposite[k];
+    if (o >= 0 && (overlay.opposite[o] != static_cast<int>(k) || overlay.origin[o] != overlay.target(static_cast<int>(k))))
+      out.push_back("overlay half-edge " + std::to_string(k) + " is not glued to its opposite");
+  }
+  for (std::size_t q = 0; q < quads.side.size(); ++q) {
+    int sign = 0;
+    for (const int k : quads.side[q]) {
+      const int s = overlay.vertices[overlay.origin[k]].grid_sign;
+      if (s == 0 || s == sign) out.push_back("sides of regular quad " + std::to_string(q) + " do not alternate");
+      if (quads.piece_cell[overlay.piece_of[k]] != static_cast<int>(q)) out.push_back("regular quad " + std::to_string(q) + " misses its side");
+      sign = s;
+    }
+  }
+  return out;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "hybrid_quad/singular_patches/patch_triangles.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// The step of a phase from p to q that is nearest to what is wanted.
+double lifted_step(const std::complex<double>& p, const std::complex<double>& q, double wanted) {
+  const double base = std::arg(q * std::conj(p));
+  return base + 2 * kPi * std::round((wanted - base) / (2 * kPi));
+}
+
+std::array<double, 2> lifted_step(const PhasePair& p, const PhasePair& q, const std::array<double, 2>& wanted) {
+  return {lifted_step(p.a, q.a, wanted[0]), lifted_step(p.b, q.b, wanted[1])};
+}
+
+PhasePair phase_of(const Vector2& uv) {
+  return {std::polar(1.0, kPi * (uv[0] + uv[1])), std::polar(1.0, kPi * (uv[0] - uv[1]))};
+}
+
+std::complex<double> unit(const std::complex<double>& z) {
+  const double length = std::abs(z);
+  return length > 1e-12 ? z / length : std::complex<double>(1, 0);
+}
+
+std::array<double, 2> phase_step(const Vector2& duv) { return {kPi * (duv[0] + duv[1]), kPi * (duv[0] - duv[1])}; }
+
+class PatchCutter {
+ public:
+  PatchCutter(const GridOverlay& overlay, const SpanningParameterization& param, const WorkingSurface& surface,
+              const std::vector<int>& pieces)
+      : overlay_(overlay), param_(param), surface_(surface), pieces_(pieces) {}
+
+  PatchTriangles cut() {
+    index_halfedges();
+    join_corners();
+    triangulate();
+    glue();
+    trace_arcs();
+    return std::move(out_);
+  }
+
+ private:
+  void index_halfedges() {
+    for (const int piece : pieces_) {
+      for (int k = overlay_.piece_begin[piece]; k < overlay_.piece_begin[piece + 1]; ++k) {
+        local_.emplace(k, static_cast<int>(halfedges_.size()));
+        halfedges_.push_back(k);
+      }
+    }
+  }
+
+  /// The local index of the half-edge across k inside the patch, or -1 where k is on the patch's border.
+  int across(int k) const {
+    const int o = overlay_.opposite[k];
+    if (o < 0 || overlay_.curve[k] >= 0) return -1;
+    const auto it = local_.find(o);
+    return it == local_.end() ? -1 : it->second;
+  }
+
+  /// One vertex a fan: corners at the same overlay vertex are joined across inner edges only, so a border that touches
+  /// itself in a point stays a manifold.
+  void join_corners() {
+    const int n = static_cast<int>(halfedges_.size());
+    std::vector<int> root(n);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int x) {
+      while (root[x] != x) x = root[x] = root[root[x]];
+      return x;
+    };
+    const auto join = [&](int x, int y) {
+      x = find(x);
+      y = find(y);
+      if (x != y) root[std::max(x, y)] = std::min(x, y);
+    };
+    for (int i = 0; i < n; ++i) {
+      const int k = halfedges_[i], j = across(k);
+      if (j < 0) continue;
+      join(i, local_.at(overlay_.next(halfedges_[j])));
+      join(local_.at(overlay_.next(k)), j);
+    }
+    corner_vertex_.assign(n, -1);
+    for (int i = 0; i < n; ++i) {
+      const int r = find(i);
+      if (corner_vertex_[r] < 0) corner_vertex_[r] = add_vertex(overlay_.origin[halfedges_[r]]);
+      corner_vertex_[i] = corner_vertex_[r];
+    }
+  }
+
+  int add_vertex(int overlay_vertex) {
+    out_.positions.push_back(overlay_.vertices[overlay_vertex].position);
+    out_.grid_sign.push_back(overlay_.vertices[overlay_vertex].grid_sign);
+    out_.node.push_back(-1);
+    return static_cast<int>(out_.positions.size()) - 1;
+  }
+
+  void add_triangle(const std::array<int, 3>& corners, const std::array<PhasePair, 3>& phases,
+                    const std::array<std::array<double, 2>, 3>& wanted) {
+    out_.faces.push_back(corners);
+    for (int i = 0; i < 3; ++i) {
+      out_.phase.push_back(phases[i]);
+      out_.step.push_back(lifted_step(phases[i], phases[(i + 1) % 3], wanted[i]));
+    }
+  }
+
+  /// What the step along an overlay half-edge should be: the chart's where the piece has one, else its share of the
+  /// surface half-edge's.
+  std::array<double, 2> wanted_step(int k) const {
+    const int h = overlay_.surface_halfedge[k];
+    if (h < 0 || overlay_.piece_regular[overlay_.piece_of[k]]) {
+      const Vector2 d = overlay_.uv[overlay_.next(k)] - overlay_.uv[k];
+      return phase_step(d);
+    }
+    const double length = surface_.mesh.edge_length(h);
+    const double part = (overlay_.vertices[overlay_.target(k)].position - overlay_.vertices[overlay_.origin[k]].position).norm();
+    const double share = length > 0 ? part / length : 0;
+    const GridVector& d = param_.halfedge_uv[h];
+    return phase_step(Vector2(static_cast<double>(d[0]), static_cast<double>(d[1])) * (share / kGridUnit));
+  }
+
+  void triangulate() {
+    first_triangle_halfedge_.assign(halfedges_.size(), -1);
+    for (const int piece : pieces_) {
+      const int begin = overlay_.piece_begin[piece], n = overlay_.piece_begin[piece + 1] - begin;
+      const int base = local_.at(begin);
+      std::vector<PhasePair> phase(n);
+      for (int i = 0; i < n; ++i) phase[i] = phase_of(overlay_.uv[begin + i]);
+      if (n == 3) {
+        for (int i = 0; i < 3; ++i)
+          first_triangle_halfedge_[base + i] = 3 * static_cast<int>(out_.faces.size()) + i;
+        add_triangle({corner_vertex_[base], corner_vertex_[base + 1], corner_vertex_[base + 2]}, {phase[0], phase[1], phase[2]},
+                     {wanted_step(begin), wanted_step(begin + 1), wanted_step(begin + 2)});
+        continue;
+      }
+      fan(piece, begin, n, base, phase);
+    }
+  }
+
+  /// A star of triangles around the piece's centre: no triangle without area, whatever points lie on its sides.
+  void fan(int piece, int begin, int n, int base, const std::vector<PhasePair>& phase) {
+    Vector3 centre = Vector3::Zero();
+    Vector2 centre_uv = Vector2::Zero();
+    PhasePair mean{0, 0};
+    for (int i = 0; i < n; ++i) {
+      centre += overlay_.vertices[overlay_.origin[begin + i]].position / n;
+      centre_uv += overlay_.uv[begin + i] / n;
+      mean.a += phase[i].a;
+      mean.b += phase[i].b;
+    }
+    const bool regular = overlay_.piece_regular[piece] != 0;
+    const PhasePair centre_phase = regular ? phase_of(centre_uv) : PhasePair{unit(mean.a), unit(mean.b)};
+    const int c = static_cast<int>(out_.positions.size());
+    out_.positions.push_back(centre);
+    out_.grid_sign.push_back(0);
+    out_.node.push_back(-1);
+    for (int i = 0; i < n; ++i) {
+      const int j = (i + 1) % n;
+      const Vector2 out_step = regular ? Vector2(centre_uv - overlay_.uv[begin + j]) : Vector2(Vector2::Zero());
+      const Vector2 in_step = regular ? Vector2(overlay_.uv[begin + i] - centre_uv) : Vector2(Vector2::Zero());
+      first_triangle_halfedge_[base + i] = 3 * static_cast<int>(out_.faces.size());
+      add_triangle({corner_vertex_[base + i], corner_vertex_[base + j], c}, {phase[i], phase[j], centre_phase},
+                   {wanted_step(begin + i), phase_step(out_step), phase_step(in_step)});
+    }
+  }
+
+  void glue() {
+    out_.opposite.assign(3 * out_.faces.size(), -1);
+    for (std::size_t i = 0; i < halfedges_.size(); ++i) {
+      const int j = across(halfedges_[i]);
+      if (j >= 0) out_.opposite[first_triangle_halfedge_[i]] = first_triangle_halfedge_[j];
+    }
+    for (const int piece : pieces_) {
+      const int base = local_.at(overlay_.piece_begin[piece]);
+      const int n = overlay_.piece_begin[piece + 1] - overlay_.piece_begin[piece];
+      if (n == 3) continue;
+      for (int i = 0; i < n; ++i) {
+        const int a = first_triangle_halfedge_[base + i] + 1, b = first_triangle_halfedge_[base + (i + 1) % n] + 2;
+        out_.opposite[a] = b;
+        out_.opposite[b] = a;
+      }
+    }
+  }
+
+  /// Border half-edges in chains between grid points, with where on the chain each begins and ends (by arc length).
+  void trace_arcs() {
+    out_.arc.assign(3 * out_.faces.size(), -1);
+    out_.arc_span.assign(3 * out_.faces.size(), {0, 0});
+    std::vector<int> chain;
+    for (std::size_t i = 0; i < halfedges_.size(); ++i) {
+      const int k = halfedges_[i];
+      if (across(k) >= 0 || overlay_.vertices[overlay_.origin[k]].grid_sign == 0) continue;
+      chain.clear();
+      double length = 0;
+      int e = k;
+      do {
+        chain.push_back(e);
+        length += segment_length(e);
+        e = next_border(e);
+      } while (overlay_.vertices[overlay_.origin[e]].grid_sign == 0 && chain.size() <= halfedges_.size());
+      if (overlay_.vertices[overlay_.origin[e]].grid_sign == 0) throw InternalError("singular patches", "a border has no grid point");
+      double walked = 0;
+      for (const int s : chain) {
+        const int t = first_triangle_halfedge_[local_.at(s)];
+        const double begin = walked;
+        walked += segment_length(s);
+        out_.arc[t] = k;
+        out_.arc_span[t] = {length > 0 ? begin / length : 0, length > 0 ? walked / length : 1};
+      }
+      out_.arc_span[first_triangle_halfedge_[local_.at(chain.back())]][1] = 1;
+      out_.node[corner_vertex_[i]] = overlay_.origin[k];
+    }
+    for (std::size_t i = 0; i < halfedges_.size(); ++i)
+      if (across(halfedges_[i]) < 0 && out_.arc[first_triangle_halfedge_[i]] < 0)
+        throw InternalError("singular patches", "a border loop has no grid point");
+  }
+
+  double segment_length(int k) const {
+    return (overlay_.vertices[overlay_.target(k)].position - overlay_.vertices[overlay_.origin[k]].position).norm();
+  }
+
+  int next_border(int k) const {
+    int n = overlay_.next(k);
+    for (int j = across(n); j >= 0; j = across(n)) n = overlay_.next(halfedges_[j]);
+    return n;
+  }
+
+  const GridOverlay& overlay_;
+  const SpanningParameterization& param_;
+  const WorkingSurface& surface_;
+  const std::vector<int>& pieces_;
+  std::unordered_map<int, int> local_;  // overlay half-edge -> index into halfedges_; looked up, never iterated
+  std::vector<int> halfedges_;
+  std::vector<int> corner_vertex_;
+  std::vector<int> first_triangle_halfedge_;
+  PatchTriangles out_;
+};
+
+}  // namespace
+
+PatchTriangles triangulate_patch(const GridOverlay& overlay, const SpanningParameterization& param,
+                                 const WorkingSurface& surface, const std::vector<int>& pieces) {
+  return PatchCutter(overlay, param, surface, pieces).cut();
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,116 @@
+#include "hybrid_quad/singular_patches/singular_patches.h"
+
+#include <algorithm>
+
+#include "hybrid_quad/singular_patches/patch_triangles.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+/// Pieces outside every cell, joined across everything but features; patches in order of their first piece.
+std::vector<std::vector<int>> find_patches(const RegularQuads& regular) {
+  const GridOverlay& overlay = regular.overlay;
+  std::vector<std::vector<int>> patches;
+  std::vector<char> seen(overlay.piece_count(), 0);
+  for (int seed = 0; seed < overlay.piece_count(); ++seed) {
+    if (seen[seed] || regular.piece_cell[seed] >= 0) continue;
+    std::vector<int> members{seed};
+    seen[seed] = 1;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      for (int k = overlay.piece_begin[members[i]]; k < overlay.piece_begin[members[i] + 1]; ++k) {
+        const int o = overlay.opposite[k];
+        if (o < 0 || overlay.curve[k] >= 0) continue;
+        const int neighbour = overlay.piece_of[o];
+        if (seen[neighbour] || regular.piece_cell[neighbour] >= 0) continue;
+        seen[neighbour] = 1;
+        members.push_back(neighbour);
+      }
+    }
+    std::sort(members.begin(), members.end());
+    patches.push_back(std::move(members));
+  }
+  return patches;
+}
+
+double area_of(const PatchSurface& patch) { return patch.mesh.total_area(); }
+
+FilledPatch fill_patch(const WorkingSurface& surface, const SpanningParameterization& param, const RegularQuads& regular,
+                       const std::vector<int>& pieces, const PatchOptions& options, const RunContext& context) {
+  const int face = regular.overlay.piece_face[pieces.front()];
+  const double length = surface.target_length[face];
+  PatchTriangles triangles = triangulate_patch(regular.overlay, param, surface, pieces);
+  refine_patch(triangles, options.longest_edge, length, context);
+  const PatchSurface patch = finish_patch(triangles, regular.overlay, length);
+  FilledPatch out;
+  out.region = surface.features.face_region[face];
+  out.area = area_of(patch);
+  out.quads = morse_smale_quads(patch, options.persistence, context);
+  out.rejected = violations_of(out.quads, patch);
+  if (!out.rejected.empty()) {
+    out.combinatorial = true;
+    out.quads = combinatorial_fill(patch, context);
+  }
+  return out;
+}
+
+/// Gives the cells around patches up, so that the patches grow over their narrow places.
+int release_neighbours(RegularQuads& regular, const std::vector<std::vector<int>>& patches, const std::vector<int>& failed) {
+  const GridOverlay& overlay = regular.overlay;
+  std::vector<char> released(regular.side.size(), 0);
+  for (const int i : failed)
+    for (const int piece : patches[i])
+      for (int k = overlay.piece_begin[piece]; k < overlay.piece_begin[piece + 1]; ++k) {
+        const int o = overlay.opposite[k];
+        if (o < 0 || overlay.curve[k] >= 0) continue;
+        const int cell = regular.piece_cell[overlay.piece_of[o]];
+        if (cell >= 0) released[cell] = 1;
+      }
+  std::vector<int> new_id(regular.side.size(), -1);
+  std::vector<std::array<int, 4>> kept;
+  for (std::size_t c = 0; c < regular.side.size(); ++c) {
+    if (released[c]) continue;
+    new_id[c] = static_cast<int>(kept.size());
+    kept.push_back(regular.side[c]);
+  }
+  const int count = static_cast<int>(regular.side.size() - kept.size());
+  regular.side = std::move(kept);
+  for (int& cell : regular.piece_cell)
+    if (cell >= 0) cell = new_id[cell];
+  return count;
+}
+
+}  // namespace
+
+SingularPatches fill_singular_patches(const WorkingSurface& surface, const SpanningParameterization& param,
+                                      RegularQuads& regular, const PatchOptions& options, const RunContext& context) {
+  SingularPatches out;
+  for (int round = 0;; ++round) {
+    out.patches.clear();
+    out.singular_area = 0;
+    const std::vector<std::vector<int>> patches = find_patches(regular);
+    std::vector<int> failed;
+    std::string reason;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      context.checkpoint(static_cast<double>(i) / static_cast<double>(patches.size()));
+      try {
+        out.patches.push_back(fill_patch(surface, param, regular, patches[i], options, context));
+        out.singular_area += out.patches.back().area;
+      } catch (const InternalError& error) {
+        failed.push_back(static_cast<int>(i));
+        reason = error.what();
+      }
+    }
+    if (failed.empty()) {
+      out.piece_patch.assign(regular.overlay.piece_count(), -1);
+      for (std::size_t i = 0; i < patches.size(); ++i)
+        for (const int piece : patches[i]) out.piece_patch[piece] = static_cast<int>(i);
+      return out;
+    }
+    const int released = round < options.widening_rounds ? release_neighbours(regular, patches, failed) : 0;
+    if (released == 0) throw InternalError("singular patches", "a patch can't be filled: " + reason);
+    out.released_cells += released;
+  }
+}
+
+}  // namespace hybrid_quad
