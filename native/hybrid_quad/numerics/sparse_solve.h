@@ -8,20 +8,13 @@ namespace hybrid_quad {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-struct SparseSolveOptions {
-  double tolerance = 1e-6;   ///< of the residual, relative to the right side
-  int max_iterations = 200;  ///< of the iterative solver, before the direct one takes over
-};
-
-/// Solves A x = b for a symmetric positive definite A, given by its lower triangle.
+/// Solves A x = b for a symmetric positive definite A, given by its lower triangle, by a sparse LDL^T factorization in
+/// minimum-degree order. On surface meshes that is near-linear in practice, and faster than preconditioned conjugate
+/// gradients (incomplete Cholesky, aggregation multigrid) up to several hundred thousand unknowns.
 ///
-/// Conjugate gradients with an aggregation multigrid (near-linear time for what behaves like a Laplacian, whatever the
-/// signs of its couplings); a sparse factorization where they do not converge. A direction in which A is singular to
-/// working precision is left at zero.
-Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side, const SparseSolveOptions& options,
-                             const RunContext& context);
-
-/// The same by a sparse factorization only.
-Eigen::VectorXd solve_sparse_directly(const SparseMatrix& lower, const Eigen::VectorXd& right_side);
+/// Robust: a matrix that is singular to working precision is shifted until it can be factorized (a direction that A does
+/// not see then stays small), and the residual is improved against the unshifted matrix. Unknowns without any entry
+/// come out as 0; a right side that is not finite gives 0.
+Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -128,7 +128,7 @@ std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
   assemble_dual(constraints, options.curl_weight, matrix, right_side);
-  const Eigen::VectorXd multiplier = solve_sparse(matrix, right_side, SparseSolveOptions{}, context);
+  const Eigen::VectorXd multiplier = solve_sparse(matrix, right_side, context);
   for (std::size_t node = 0; node < constraints.terms.size(); ++node) {
     Vector2 push = Vector2::Zero();
     for (int a = 0; a < constraints.term_count[node]; ++a)
