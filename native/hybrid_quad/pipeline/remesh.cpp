@@ -1,0 +1,166 @@
+#include "hybrid_quad/pipeline/remesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/pipeline/component.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+struct Component {
+  TriangleMesh mesh;
+  std::vector<int> vertex;  ///< #V: vertex of the whole mesh
+};
+
+/// Connected components in the order of their first faces.
+std::vector<Component> split_components(const TriangleMesh& mesh) {
+  std::vector<int> id(mesh.face_count(), -1);
+  std::vector<Component> out;
+  std::vector<int> local(mesh.vertex_count(), -1), members;
+  for (int seed = 0; seed < mesh.face_count(); ++seed) {
+    if (id[seed] >= 0) continue;
+    const int component = static_cast<int>(out.size());
+    members.assign(1, seed);
+    id[seed] = component;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int o = mesh.opposite(3 * members[i] + k);
+        if (o < 0 || id[o / 3] >= 0) continue;
+        id[o / 3] = component;
+        members.push_back(o / 3);
+      }
+    std::sort(members.begin(), members.end());
+    std::vector<Vector3> positions;
+    std::vector<std::array<int, 3>> faces;
+    std::vector<int> vertex;
+    for (const int f : members) {
+      std::array<int, 3> face = mesh.face(f);
+      for (int& v : face) {
+        if (local[v] < 0) {
+          local[v] = static_cast<int>(vertex.size());
+          vertex.push_back(v);
+          positions.push_back(mesh.position(v));
+        }
+        v = local[v];
+      }
+      faces.push_back(face);
+    }
+    for (const int v : vertex) local[v] = -1;
+    out.push_back({TriangleMesh(std::move(positions), std::move(faces)), std::move(vertex)});
+  }
+  return out;
+}
+
+/// Pairs of input vertices as pairs of a component's vertices (an input vertex may have been split into several).
+std::vector<std::array<int, 2>> marked_in(const Component& component, const BuiltMesh& built,
+                                          const std::vector<std::array<int, 2>>& marked) {
+  std::vector<std::array<int, 2>> sorted, out;
+  for (const auto& m : marked) sorted.push_back({std::min(m[0], m[1]), std::max(m[0], m[1])});
+  std::sort(sorted.begin(), sorted.end());
+  for (int h = 0; h < component.mesh.halfedge_count(); ++h) {
+    if (component.mesh.opposite(h) > h) continue;
+    const int a = component.mesh.from(h), b = component.mesh.to(h);
+    const int ia = built.input_vertex[component.vertex[a]], ib = built.input_vertex[component.vertex[b]];
+    if (std::binary_search(sorted.begin(), sorted.end(), std::array<int, 2>{std::min(ia, ib), std::max(ia, ib)}))
+      out.push_back({a, b});
+  }
+  return out;
+}
+
+/// A component needs a few quads to be a mesh at all, however small it is.
+double least_quads(const TriangleMesh& mesh) { return mesh.euler_characteristic() == 2 ? 24 : 8; }
+
+void append(RemeshResult& result, const ComponentResult& component, const std::vector<int>& input_vertex) {
+  const int base = static_cast<int>(result.mesh.positions.size());
+  const QuadMesh& m = component.mesh;
+  result.mesh.positions.insert(result.mesh.positions.end(), m.positions.begin(), m.positions.end());
+  result.mesh.kind.insert(result.mesh.kind.end(), m.kind.begin(), m.kind.end());
+  for (std::size_t v = 0; v < m.anchor.size(); ++v)
+    result.mesh.anchor.push_back(m.kind[v] == VertexKind::kCorner ? input_vertex[m.anchor[v]] : m.anchor[v]);
+  for (auto q : m.quads) {
+    for (int& v : q) v += base;
+    result.mesh.quads.push_back(q);
+  }
+  for (auto e : m.feature_edges) result.mesh.feature_edges.push_back({e.a + base, e.b + base, e.curve});
+  RemeshReport& r = result.report;
+  r.working_faces += component.working_faces;
+  r.field_singularities += component.field_singularities;
+  r.dislocations += component.dislocations;
+  r.dislocations_found += component.dislocations_found;
+  r.patches.count += component.patches.count;
+  r.patches.morse_smale += component.patches.morse_smale;
+  r.patches.combinatorial += component.patches.combinatorial;
+  r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
+}
+
+void measure_quality(RemeshResult& result, const std::vector<Component>& components,
+                     const std::vector<ComponentResult>& parts, const TriangleMesh& whole, const RunContext& context) {
+  RemeshReport& r = result.report;
+  const ShapeQuality shape = shape_quality(result.mesh);
+  r.scaled_jacobian_mean = shape.scaled_jacobian_mean;
+  r.scaled_jacobian_p1 = shape.scaled_jacobian_p1;
+  r.scaled_jacobian_min = shape.scaled_jacobian_min;
+  r.irregular_vertices = shape.irregular_vertices;
+  const SurfaceDistance distance = surface_distance(result.mesh, SurfaceIndex(whole, {}), context);
+  r.hausdorff_percent = distance.hausdorff();
+  r.mean_distance_percent = distance.mean;
+  const double diagonal = whole.diagonal();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double percent = feature_distance(parts[i].mesh, components[i].mesh, parts[i].features, context);
+    r.feature_hausdorff_percent = std::max(r.feature_hausdorff_percent, percent * components[i].mesh.diagonal() / diagonal);
+  }
+}
+
+}  // namespace
+
+RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
+  RemeshResult result;
+  RemeshReport& report = result.report;
+  StageClock clock;
+  const BuiltMesh built = clock.measure("mesh", [&] {
+    context.in_stage("mesh", 0, 0.02).checkpoint();
+    return build_mesh(soup);
+  });
+  report.defects = built.defects;
+  report.input_vertices = static_cast<int>(soup.positions.size());
+  report.input_faces = static_cast<int>(soup.face_sizes.size());
+
+  const std::vector<Component> components = split_components(built.mesh);
+  report.components = static_cast<int>(components.size());
+  const double area = built.mesh.total_area();
+  const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(area / std::max(1, options.quads));
+
+  std::vector<ComponentResult> parts;
+  double done = 0, singular_area = 0, combinatorial_area = 0;
+  for (const Component& component : components) {
+    const double share = component.mesh.total_area() / area;
+    const double asked = std::max(least_quads(component.mesh), component.mesh.total_area() / (length * length));
+    RunContext part_context = context;
+    part_context.stage_begin = context.stage_begin + (0.02 + 0.95 * done) * (context.stage_end - context.stage_begin);
+    part_context.stage_end = part_context.stage_begin + 0.95 * share * (context.stage_end - context.stage_begin);
+    parts.push_back(remesh_component(component.mesh, asked, marked_in(component, built, options.marked_edges), options, clock, part_context));
+    std::vector<int> input_vertex;
+    for (const int v : component.vertex) input_vertex.push_back(built.input_vertex[v]);
+    append(result, parts.back(), input_vertex);
+    singular_area += parts.back().singular_area;
+    combinatorial_area += parts.back().combinatorial_area;
+    done += share;
+  }
+  report.singular_area_fraction = singular_area / area;
+  report.patches.combinatorial_area_fraction = combinatorial_area / area;
+  report.quads = static_cast<int>(result.mesh.quads.size());
+  report.vertices = static_cast<int>(result.mesh.positions.size());
+  const double wanted = area / (length * length);
+  if (std::abs(report.quads / wanted - 1) > 0.1)
+    report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
+                              ": features or small parts need another number");
+  clock.measure("quality", [&] {
+    measure_quality(result, components, parts, built.mesh, context.in_stage("quality", 0.97, 1.0));
+  });
+  report.stages = clock.records;
+  return result;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "hybrid_quad/assemble/assemble.h"
+#include "hybrid_quad/base/snapshot.h"
+
+namespace hybrid_quad {
+
+Snapshot snapshot_of(const TriangleMesh& mesh, const FeatureGraph& features);
+Snapshot snapshot_of(const WorkingSurface& surface);
+/// "u direction", "v direction" as face vectors, "cone index" at vertices
+Snapshot snapshot_of(const FrameField& field, const WorkingSurface& surface, const std::string& stage);
+/// "morse" at vertices
+Snapshot snapshot_of(const PeriodicField& psi, const WorkingSurface& surface);
+/// "regular", "charge" at faces
+Snapshot snapshot_of(const SpanningParameterization& param, const WorkingSurface& surface);
+/// the overlay's pieces with "quad" (-1 = singular region) and "patch" at faces
+Snapshot snapshot_of(const RegularQuads& regular, const SingularPatches& singular);
+Snapshot snapshot_of(const QuadMesh& quads, const std::string& stage);
+
+}  // namespace hybrid_quad
