@@ -24,20 +24,24 @@ QuadOffset offset_of(const Workpiece& piece, const QuadFrame& frame, int q) {
   const auto& v = piece.mesh.quad(q);
   const auto& p = piece.mesh.positions;
   const double limit = kFarthest * std::sqrt(frame.area);
+  constexpr double kAgrees = 0.1;
   SurfaceIndex::Filter filter;
   filter.region = piece.region_filter(piece.region[q]);
   filter.normal = frame.normal;
-  filter.min_cosine = 0.1;
+  filter.min_cosine = kAgrees;
+  int face = -1;
   for (const int corner : v)
-    if (piece.mesh.is_free(corner) && piece.face[corner] >= 0) filter.hint = piece.face[corner];
+    if (piece.mesh.is_free(corner) && piece.face[corner] >= 0) face = piece.face[corner];
   QuadOffset offset;
   for (const double a : kPlaces)
     for (const double b : kPlaces) {
       const std::array<double, 4> w = corner_weights(a, b);
       const Vector3 at = w[0] * p[v[0]] + w[1] * p[v[1]] + w[2] * p[v[2]] + w[3] * p[v[3]];
-      const SurfacePoint near = piece.index.nearest(at, filter);
+      SurfacePoint near;
+      if (face >= 0) near = piece.walk(at, face);
+      if (near.face < 0 || piece.input.normal(near.face).dot(frame.normal) < kAgrees) near = piece.index.nearest(at, filter);
       if (near.face < 0) continue;
-      filter.hint = near.face;
+      face = near.face;
       const double d = (near.position - at).dot(frame.normal);
       if (!(std::abs(d) <= limit)) continue;
       for (int i = 0; i < 4; ++i) {

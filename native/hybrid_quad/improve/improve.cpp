@@ -3,6 +3,7 @@
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/valence_moves.h"
+#include "hybrid_quad/improve/wedge_template.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
@@ -23,7 +24,9 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity) {
     smoother.smooth(kSweepsBefore, context);
-    report.connectivity_moves = improve_valences(piece, smoother, context);
+    report.connectivity_moves = straighten_features(piece, smoother, context);
+    report.connectivity_moves += open_straight_corners(piece, smoother, context);
+    report.connectivity_moves += improve_valences(piece, smoother, context);
   }
   smoother.smooth(options.smoothing_sweeps, context);
   if (options.fit) fit_to_input(piece, smoother, context);

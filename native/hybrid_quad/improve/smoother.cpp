@@ -39,7 +39,7 @@ void Smoother::update_reference(int q) {
   SurfacePoint nearest;
   for (const int corner : v) {
     if (!piece_.mesh.is_free(corner) || piece_.face[corner] < 0) continue;
-    const SurfacePoint walked = piece_.index.walk(centre, piece_.face[corner]);
+    const SurfacePoint walked = piece_.walk(centre, piece_.face[corner]);
     if (nearest.face < 0 || walked.squared_distance < nearest.squared_distance) nearest = walked;
     around += input.normal(piece_.face[corner]);
   }
@@ -240,7 +240,7 @@ double Smoother::move_free(int v, double size) {
   if (!std::isfinite(length) || length < 1e-7 * size) return 0;
   if (length > kLongestStep * size) step *= kLongestStep * size / length;
   for (int k = 0; k < kBacktracks; ++k) {
-    const SurfacePoint target = piece_.index.walk(start + step, piece_.face[v]);
+    const SurfacePoint target = piece_.walk(start + step, piece_.face[v]);
     if (target.face >= 0 && energy(v, target.position) < before) {
       piece_.mesh.positions[v] = target.position;
       piece_.face[v] = target.face;

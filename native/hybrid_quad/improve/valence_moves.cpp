@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hybrid_quad {
 
@@ -240,7 +241,7 @@ void make_sequence(Workpiece& piece, const Sequence& sequence, bool with_positio
     if (with_positions && move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone) &&
         piece.mesh.is_free(kept) && piece.face[kept] >= 0) {
       const Vector3 middle = 0.5 * (piece.mesh.positions[kept] + piece.mesh.positions[gone]);
-      const SurfacePoint point = piece.index.walk(middle, piece.face[kept]);
+      const SurfacePoint point = piece.walk(middle, piece.face[kept]);
       if (point.face >= 0) {
         piece.face[kept] = point.face;
         piece.mesh.positions[kept] = point.position;
@@ -323,6 +324,7 @@ Trial::Trial(Workpiece& piece, Smoother& smoother, std::vector<int> vertices)
     faces_.push_back(piece_.face[v]);
     arcs_.push_back(piece_.arc[v]);
   }
+  old_vertices_ = piece_.mesh.vertex_count();
   collect_quads();
   before_ = worst();
 }
@@ -341,10 +343,10 @@ double Trial::worst() const {
 }
 
 bool Trial::keep(double good_enough) {
-  const int old_count = static_cast<int>(positions_.size());
   std::vector<int> inside;
   for (const int v : vertices_)
     if (piece_.mesh.valence(v) > 0) inside.push_back(v);
+  for (int v = old_vertices_; v < piece_.mesh.vertex_count(); ++v) inside.push_back(v);
   smoother_.relax(inside, 2, 0.1);
   smoother_.relax(inside, 3, 1e-3);
   collect_quads();
@@ -353,7 +355,7 @@ bool Trial::keep(double good_enough) {
     return true;
   }
   piece_.mesh.undo_to(mark_);
-  for (int i = 0; i < old_count; ++i) {
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
     piece_.mesh.positions[vertices_[i]] = positions_[i];
     piece_.face[vertices_[i]] = faces_[i];
     piece_.arc[vertices_[i]] = arcs_[i];
@@ -363,21 +365,28 @@ bool Trial::keep(double good_enough) {
   return false;
 }
 
+int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr SearchLimits kLimits{3, 30, 2.0, 6000, 6};
+  SequenceSearch search(piece.mesh);
+  int moves = 0;
+  const int n = piece.mesh.vertex_count();
+  for (int v = 0; v < n; ++v) {
+    if ((v & 255) == 0) context.checkpoint();
+    if (has_straight_corner(piece.mesh, v)) moves += improve_around(piece, smoother, search, v, kLimits);
+  }
+  return moves;
+}
+
 int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr SearchLimits kStraightLimits{3, 30, 2.0, 6000, 6};
   constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5};
   constexpr int kPasses = 2;
   SequenceSearch search(piece.mesh);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
-  for (int v = 0; v < n; ++v) {
-    if ((v & 255) == 0) context.checkpoint(0.3 * v / n);
-    if (has_straight_corner(piece.mesh, v)) moves += improve_around(piece, smoother, search, v, kStraightLimits);
-  }
   for (int pass = 0; pass < kPasses; ++pass) {
     int made = 0;
     for (int v = 0; v < n; ++v) {
-      if ((v & 255) == 0) context.checkpoint(0.3 + 0.35 * (pass + static_cast<double>(v) / n));
+      if ((v & 255) == 0) context.checkpoint();
       if (valence_cost(piece.mesh, v) > 0.5) made += improve_around(piece, smoother, search, v, kLimits);
     }
     moves += made;

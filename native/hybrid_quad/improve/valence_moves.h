@@ -16,10 +16,11 @@ double valence_cost(const EditMesh& mesh, int v);
 /// True for a vertex one of whose quads cannot have a good shape whatever its vertices do.
 bool has_straight_corner(const EditMesh& mesh, int v);
 
-/// Lowers the valence cost by sequences of diagonal collapses and edge rotations, each sequence kept only if the quads
-/// around are not worse afterwards (locally smoothed). First where quads are straight at a feature, then around every
-/// irregular vertex.
-/// \returns number of moves made
+/// Sequences of up to three diagonal collapses and edge rotations where quads are straight at a feature, each kept only if
+/// the quads around are not worse afterwards (locally smoothed). \returns number of moves made
+int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& context);
+
+/// The same around every irregular vertex, up to two moves each.
 int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context);
 
 /// A change of connectivity on trial: what is around it, and how to get back. Take the trial, change the mesh, then
@@ -37,6 +38,7 @@ class Trial {
   Workpiece& piece_;
   Smoother& smoother_;
   std::size_t mark_;
+  int old_vertices_ = 0;
   std::vector<int> vertices_, quads_;
   std::vector<Vector3> positions_;
   std::vector<int> faces_;

@@ -69,16 +69,17 @@ void Workpiece::bind_free(int v, const Vector3& normal) {
   filter.region = region_filter(mesh.anchor(v));
   filter.hint = face[v];
   const double length = normal.norm();
-  SurfacePoint point;
-  if (length > 0) {
+  SurfacePoint point = index.nearest(mesh.positions[v], filter);
+  constexpr double kAgrees = 0.1, kWorthInEdges = 0.5;
+  if (length > 0 && point.face >= 0 && input.normal(point.face).dot(normal) < kAgrees * length) {
+    // Perhaps the far side of a thin part. But a quad that starts inverted has a wrong normal: believe it only where
+    // that costs little distance.
     filter.normal = normal / length;
-    filter.min_cosine = 0.1;
-    point = index.nearest(mesh.positions[v], filter);
+    filter.min_cosine = kAgrees;
+    const SurfacePoint agreeing = index.nearest(mesh.positions[v], filter);
+    if (agreeing.face >= 0 && std::sqrt(agreeing.squared_distance) < std::sqrt(point.squared_distance) + kWorthInEdges * h)
+      point = agreeing;
   }
-  // A quad that starts inverted has a wrong normal: believe it only where it costs little distance.
-  filter.min_cosine = -2;
-  const SurfacePoint any = index.nearest(mesh.positions[v], filter);
-  if (point.face < 0 || std::sqrt(point.squared_distance) > std::sqrt(any.squared_distance) + 0.5 * h) point = any;
   if (point.face < 0) point = index.nearest(mesh.positions[v]);
   if (point.face < 0) return;
   face[v] = point.face;

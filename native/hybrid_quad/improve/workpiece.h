@@ -5,6 +5,7 @@
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/improve/curve_geometry.h"
 #include "hybrid_quad/improve/edit_mesh.h"
+#include "hybrid_quad/improve/surface_walk.h"
 #include "hybrid_quad/mesh/surface_index.h"
 
 namespace hybrid_quad {
@@ -31,6 +32,8 @@ struct Workpiece {
   /// Puts free vertex v at the point of its region nearest to where it is, on a face that looks along `normal`
   /// (zero: any).
   void bind_free(int v, const Vector3& normal);
+  /// The nearest point that can be reached from an input face without leaving its region.
+  SurfacePoint walk(const Vector3& p, int start) const { return walk_to_nearest(input, features.face_region, p, start); }
   int add_vertex(const Vector3& position, int region_id, const Vector3& normal);
   int add_quad(const EditMesh::Quad& corners, int region_id);
 
