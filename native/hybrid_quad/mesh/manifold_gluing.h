@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hybrid_quad/base/types.h"
+
+namespace hybrid_quad {
+
+/// Triangles with their gluing: always a union of oriented 2-manifolds.
+struct ManifoldGluing {
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> faces;
+  std::vector<int> opposite;          ///< 3 #F
+  std::vector<int> source_vertex;     ///< #V: vertex of the input it is a copy of
+  std::vector<char> was_flipped;      ///< #F
+  std::vector<std::array<int, 2>> non_manifold_edges;
+  std::vector<int> non_manifold_vertices;
+  std::vector<int> non_orientable_faces;  ///< not empty: the faces of a component without a consistent orientation
+};
+
+/// Glues triangles along their common edges. Where more than two faces meet, the flattest pairs stay together and the
+/// others part; a vertex with several fans becomes several vertices. Each component is oriented as most of its faces
+/// are; one that was inconsistent and is closed is oriented outwards.
+ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,345 @@
+#include "hybrid_quad/mesh/mesh_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/degenerate_faces.h"
+#include "hybrid_quad/mesh/manifold_gluing.h"
+#include "hybrid_quad/mesh/polygon_triangulation.h"
+#include "hybrid_quad/mesh/vertex_welding.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly all others a vertex must lie
+constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
+constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
+
+/// Builds the mesh step by step; every step notes the defects that it found.
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(const PolygonSoup& soup) : soup_(soup) {}
+
+  BuiltMesh build();
+  std::vector<Defect> defects;
+
+ private:
+  void check_faces();
+  void find_references();
+  void check_positions();
+  void normalize_positions();
+  void make_triangles();
+  void weld();
+  bool merge_vertices(const std::vector<int>& target);
+  void drop_duplicates();
+  BuiltMesh glue();
+  void drop_components_without_area(BuiltMesh& built);
+
+  void note(const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
+    if (!elements.empty()) defects.push_back({code, kind, std::move(elements), true, remedy});
+  }
+  [[noreturn]] void refuse(const char* code, const std::string& message, const char* kind, std::vector<int> elements) {
+    defects.push_back({code, kind, elements, false, message});
+    throw InputError(code, message, kind, std::move(elements));
+  }
+  int face_count() const { return static_cast<int>(soup_.face_sizes.size()); }
+
+  const PolygonSoup& soup_;
+  std::vector<int> first_corner_;
+  std::vector<char> is_used_;
+  std::vector<Vector3> positions_;  ///< moved to the box's centre and divided by its diagonal
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> polygon_;        ///< of each triangle
+};
+
+void MeshBuilder::check_faces() {
+  first_corner_.assign(1, 0);
+  long long corners = 0;
+  for (const int size : soup_.face_sizes) {
+    corners += std::max(size, 0);
+    if (size < 0 || corners > static_cast<long long>(soup_.face_vertices.size())) break;
+    first_corner_.push_back(static_cast<int>(corners));
+  }
+  if (static_cast<int>(first_corner_.size()) != face_count() + 1 || corners != static_cast<long long>(soup_.face_vertices.size()))
+    refuse("malformed_faces", "The sizes of the faces do not add up to the number of face corners.", "", {});
+  std::vector<int> bad;
+  const int vertex_count = static_cast<int>(soup_.positions.size());
+  for (int f = 0; f < face_count(); ++f)
+    for (int c = first_corner_[f]; c < first_corner_[f + 1]; ++c)
+      if (soup_.face_vertices[c] < 0 || soup_.face_vertices[c] >= vertex_count) {
+        bad.push_back(f);
+        break;
+      }
+  if (!bad.empty()) refuse("index_out_of_range", "Faces use vertices that do not exist.", "face", std::move(bad));
+  if (face_count() == 0) refuse("empty_mesh", "The mesh has no faces.", "", {});
+}
+
+void MeshBuilder::find_references() {
+  is_used_.assign(soup_.positions.size(), 0);
+  for (const int v : soup_.face_vertices) is_used_[v] = 1;
+  std::vector<int> isolated;
+  for (int v = 0; v < static_cast<int>(is_used_.size()); ++v)
+    if (!is_used_[v]) isolated.push_back(v);
+  note("isolated_vertex", "vertex", std::move(isolated), "left out");
+}
+
+void MeshBuilder::check_positions() {
+  std::vector<int> bad, used;
+  for (int v = 0; v < static_cast<int>(is_used_.size()); ++v) {
+    if (!is_used_[v]) continue;
+    used.push_back(v);
+    if (!soup_.positions[v].allFinite()) bad.push_back(v);
+  }
+  if (!bad.empty()) refuse("non_finite_vertex", "Vertices have coordinates that are no finite numbers.", "vertex", std::move(bad));
+
+  Vector3 median;
+  std::vector<double> values(used.size());
+  const auto nth = [&values](double share) {
+    const std::size_t i = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values.end());
+    return values[i];
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < used.size(); ++i) values[i] = soup_.positions[used[i]][axis];
+    median[axis] = nth(0.5);
+  }
+  const auto distance = [&](int v) { return (soup_.positions[v] - median).cwiseAbs().maxCoeff(); };
+  for (std::size_t i = 0; i < used.size(); ++i) values[i] = distance(used[i]);
+  const double usual = nth(0.9);
+  for (const int v : used)
+    if (usual > 0 && distance(v) / usual > kOutlierFactor) bad.push_back(v);
+  if (!bad.empty())
+    refuse("coordinate_outlier", "Vertices lie so far from all others that these shrink to a point.", "vertex", std::move(bad));
+}
+
+void MeshBuilder::normalize_positions() {
+  Vector3 low = Vector3::Constant(HUGE_VAL), high = Vector3::Constant(-HUGE_VAL);
+  for (std::size_t v = 0; v < is_used_.size(); ++v)
+    if (is_used_[v]) {
+      low = low.cwiseMin(soup_.positions[v]);
+      high = high.cwiseMax(soup_.positions[v]);
+    }
+  const Vector3 centre = 0.5 * low + 0.5 * high;
+  const Vector3 half = high - centre;
+  const double size = half.maxCoeff();
+  if (!(size > 0)) refuse("no_area", "All vertices lie at the same place.", "", {});
+  const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
+  positions_.assign(is_used_.size(), Vector3::Zero());
+  for (std::size_t v = 0; v < is_used_.size(); ++v)
+    if (is_used_[v]) positions_[v] = (soup_.positions[v] - centre) / size / diagonal;
+}
+
+void MeshBuilder::make_triangles() {
+  std::vector<int> repeated, few, corners, flat;
+  for (int f = 0; f < face_count(); ++f) {
+    corners.assign(soup_.face_vertices.begin() + first_corner_[f], soup_.face_vertices.begin() + first_corner_[f + 1]);
+    const std::size_t size = corners.size();
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+    if (size < 3) few.push_back(f);
+    else if (corners.size() < size) repeated.push_back(f);
+    if (corners.size() < 3) continue;
+    bool is_flat = true;
+    for (const auto& t : triangulate_polygon(positions_, corners)) {
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      is_flat = is_flat && has_no_area(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+      triangles_.push_back(t);
+      polygon_.push_back(f);
+    }
+    if (is_flat) flat.push_back(f);
+  }
+  note("too_few_corners", "face", std::move(few), "left out");
+  note("repeated_index_face", "face", std::move(repeated), "repeated corners are left out");
+  note("zero_area_face", "face", std::move(flat), "removed by flips and collapses");
+}
+
+/// Replaces vertices by their targets and drops triangles that this closes; true if any vertex changed.
+bool MeshBuilder::merge_vertices(const std::vector<int>& target) {
+  bool changed = false;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    std::array<int, 3> t = triangles_[i];
+    for (int& v : t) {
+      changed |= target[v] != v;
+      v = target[v];
+    }
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    triangles_[kept] = t;
+    polygon_[kept++] = polygon_[i];
+  }
+  triangles_.resize(kept);
+  polygon_.resize(kept);
+  return changed;
+}
+
+void MeshBuilder::weld() {
+  const auto merged = [](const std::vector<int>& target) {
+    std::vector<int> list;
+    for (int v = 0; v < static_cast<int>(target.size()); ++v)
+      if (target[v] != v) list.push_back(v);
+    return list;
+  };
+  std::vector<int> target = welded_vertices(positions_, triangles_);
+  if (merge_vertices(target)) note("unwelded_vertex", "vertex", merged(target), "merged with the vertex at the same place");
+  if (triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
+  target = nearly_welded_vertices(positions_, kLooseTolerance);
+  for (std::size_t v = 0; v < target.size(); ++v)
+    if (!is_used_[v]) target[v] = static_cast<int>(v);
+  const auto triangles = triangles_;
+  const auto polygon = polygon_;
+  merge_vertices(target);
+  if (open_edge_share(triangles_) < 0.5) {
+    note("nearly_welded_vertex", "vertex", merged(target), "merged with the vertex next to it");
+  } else {
+    triangles_ = triangles;
+    polygon_ = polygon;
+  }
+}
+
+void MeshBuilder::drop_duplicates() {
+  std::vector<std::pair<std::array<int, 3>, int>> keys;
+  keys.reserve(triangles_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    std::array<int, 3> key = triangles_[i];
+    std::sort(key.begin(), key.end());
+    keys.push_back({key, static_cast<int>(i)});
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<char> is_copy(triangles_.size(), 0);
+  std::vector<int> copies;
+  for (std::size_t i = 1; i < keys.size(); ++i)
+    if (keys[i].first == keys[i - 1].first) is_copy[keys[i].second] = 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    if (is_copy[i]) {
+      copies.push_back(polygon_[i]);
+      continue;
+    }
+    triangles_[kept] = triangles_[i];
+    polygon_[kept++] = polygon_[i];
+  }
+  triangles_.resize(kept);
+  polygon_.resize(kept);
+  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
+  note("duplicate_face", "face", std::move(copies), "left out");
+}
+
+BuiltMesh MeshBuilder::glue() {
+  ManifoldGluing glued = glue_triangles(positions_, triangles_);
+  const auto polygons_of = [this](const std::vector<int>& faces) {
+    std::vector<int> list;
+    for (const int f : faces) list.push_back(polygon_[f]);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  };
+  if (!glued.non_orientable_faces.empty())
+    refuse("non_orientable", "The surface has one side only (like a Moebius strip): it cannot be oriented.", "face",
+           polygons_of(glued.non_orientable_faces));
+  std::vector<int> flipped, edge_ends;
+  for (int f = 0; f < static_cast<int>(glued.was_flipped.size()); ++f)
+    if (glued.was_flipped[f]) flipped.push_back(f);
+  for (const auto& e : glued.non_manifold_edges) edge_ends.insert(edge_ends.end(), e.begin(), e.end());
+  note("flipped_face", "face", polygons_of(flipped), "turned around");
+  note("non_manifold_edge", "edge", std::move(edge_ends), "the surface is cut there");
+  note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
+
+  BuiltMesh built;
+  const TriangleMesh whole(std::move(glued.positions), std::move(glued.faces), std::move(glued.opposite));
+  ResolvedMesh resolved = resolve_faces_without_area(whole);
+  for (const int v : resolved.vertex_source) built.input_vertex.push_back(glued.source_vertex[v]);
+  for (const int f : resolved.face_source) built.input_face.push_back(polygon_[f]);
+  built.mesh = std::move(resolved.mesh);
+  return built;
+}
+
+/// Drops components all of whose faces have no area, and puts the vertices back at their places in the input.
+void MeshBuilder::drop_components_without_area(BuiltMesh& built) {
+  const TriangleMesh& mesh = built.mesh;
+  std::vector<int> component(mesh.face_count(), -1), stack;
+  std::vector<char> has_area;
+  for (int seed = 0; seed < mesh.face_count(); ++seed) {
+    if (component[seed] >= 0) continue;
+    const int id = static_cast<int>(has_area.size());
+    has_area.push_back(0);
+    component[seed] = id;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      const int f = stack.back();
+      stack.pop_back();
+      const auto& t = mesh.face(f);
+      if (!has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]))) has_area[id] = 1;
+      for (int h = 3 * f; h < 3 * f + 3; ++h) {
+        const int o = mesh.opposite(h);
+        if (o < 0 || component[o / 3] >= 0) continue;
+        component[o / 3] = id;
+        stack.push_back(o / 3);
+      }
+    }
+  }
+  BuiltMesh kept;
+  std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> faces;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (has_area[component[f]]) {
+      new_face[f] = static_cast<int>(kept.input_face.size());
+      kept.input_face.push_back(built.input_face[f]);
+      for (const int v : mesh.face(f)) new_vertex[v] = 0;
+    }
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (new_vertex[v] == 0) {
+      new_vertex[v] = static_cast<int>(positions.size());
+      kept.input_vertex.push_back(built.input_vertex[v]);
+      positions.push_back(soup_.positions[built.input_vertex[v]]);
+    }
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (new_face[f] >= 0) {
+      faces.push_back({new_vertex[mesh.face(f)[0]], new_vertex[mesh.face(f)[1]], new_vertex[mesh.face(f)[2]]});
+      for (int h = 3 * f; h < 3 * f + 3; ++h) {
+        const int o = mesh.opposite(h);
+        opposite.push_back(o < 0 ? -1 : 3 * new_face[o / 3] + o % 3);
+      }
+    }
+  if (faces.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
+  kept.mesh = TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
+  built = std::move(kept);
+}
+
+BuiltMesh MeshBuilder::build() {
+  check_faces();
+  find_references();
+  check_positions();
+  normalize_positions();
+  make_triangles();
+  weld();
+  drop_duplicates();
+  if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
+  BuiltMesh built = glue();
+  drop_components_without_area(built);
+  return built;
+}
+
+}  // namespace
+
+std::vector<Defect> check_mesh(const PolygonSoup& soup) {
+  MeshBuilder builder(soup);
+  try {
+    builder.build();
+  } catch (const InputError&) {
+    // The last defect says so.
+  }
+  return std::move(builder.defects);
+}
+
+BuiltMesh build_mesh(const PolygonSoup& soup) {
+  MeshBuilder builder(soup);
+  BuiltMesh built = builder.build();
+  built.defects = std::move(builder.defects);
+  return built;
+}
+
+}  // namespace hybrid_quad

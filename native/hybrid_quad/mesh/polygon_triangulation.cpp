@@ -1,0 +1,70 @@
+#include "hybrid_quad/mesh/polygon_triangulation.h"
+
+#include <algorithm>
+
+namespace hybrid_quad {
+
+namespace {
+
+double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The polygon's corners in its best plane, counterclockwise.
+std::vector<Vector2> flattened(const std::vector<Vector3>& positions, const std::vector<int>& corners) {
+  const int n = static_cast<int>(corners.size());
+  const Vector3 origin = positions[corners[0]];
+  Vector3 normal = Vector3::Zero();
+  for (int i = 0; i < n; ++i)
+    normal += (positions[corners[i]] - origin).cross(positions[corners[(i + 1) % n]] - origin);
+  if (!(normal.norm() > 0)) normal = Vector3(0, 0, 1);
+  const Vector3 u = normal.unitOrthogonal(), v = normal.normalized().cross(u);
+  std::vector<Vector2> flat(n);
+  for (int i = 0; i < n; ++i) flat[i] = {u.dot(positions[corners[i]] - origin), v.dot(positions[corners[i]] - origin)};
+  return flat;
+}
+
+bool is_inside(const Vector2& p, const Vector2& a, const Vector2& b, const Vector2& c) {
+  return cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 && cross(a - c, p - c) >= 0;
+}
+
+/// Twice the area over the sum of squared sides: how good an ear is; <= 0 if it is none.
+double ear_quality(const std::vector<Vector2>& p, const std::vector<int>& left, int i) {
+  const int n = static_cast<int>(left.size());
+  const Vector2 &a = p[left[(i + n - 1) % n]], &b = p[left[i]], &c = p[left[(i + 1) % n]];
+  const double area2 = cross(b - a, c - a);
+  if (!(area2 > 0)) return 0;
+  for (int j = 0; j < n; ++j) {
+    const Vector2& q = p[left[j]];
+    if (q != a && q != b && q != c && is_inside(q, a, b, c)) return 0;
+  }
+  return area2 / ((b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm());
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners) {
+  if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
+  const std::vector<Vector2> flat = flattened(positions, corners);
+  std::vector<int> left(corners.size());
+  for (int i = 0; i < static_cast<int>(left.size()); ++i) left[i] = i;
+  constexpr int kLargePolygon = 64;  // beyond it the first ear is taken: the best one costs O(n^3) in all
+  std::vector<std::array<int, 3>> triangles;
+  while (left.size() > 3) {
+    const int n = static_cast<int>(left.size());
+    int best = -1;
+    double best_quality = 0;
+    for (int i = 0; i < n && (best < 0 || n <= kLargePolygon); ++i) {
+      const double quality = ear_quality(flat, left, i);
+      if (quality > best_quality) {
+        best_quality = quality;
+        best = i;
+      }
+    }
+    if (best < 0) best = 0;  // no ear: the polygon crosses itself or has no area
+    triangles.push_back({corners[left[(best + n - 1) % n]], corners[left[best]], corners[left[(best + 1) % n]]});
+    left.erase(left.begin() + best);
+  }
+  triangles.push_back({corners[left[0]], corners[left[1]], corners[left[2]]});
+  return triangles;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,118 @@
+#include "hybrid_quad/mesh/vertex_welding.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace hybrid_quad {
+
+namespace {
+
+class VertexSets {
+ public:
+  explicit VertexSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(int v, int w) {
+    v = find(v);
+    w = find(w);
+    parent_[std::max(v, w)] = std::min(v, w);
+  }
+  std::vector<int> roots() {
+    std::vector<int> r(parent_.size());
+    for (int v = 0; v < static_cast<int>(r.size()); ++v) r[v] = find(v);
+    return r;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// The first vertex at the same place, for every vertex.
+std::vector<int> places_of(const std::vector<Vector3>& positions) {
+  std::vector<int> order(positions.size()), place(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&positions](int v, int w) {
+    const Vector3 &p = positions[v], &q = positions[w];
+    return std::make_tuple(p.x(), p.y(), p.z(), v) < std::make_tuple(q.x(), q.y(), q.z(), w);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? place[order[i - 1]] : order[i];
+  return place;
+}
+
+/// Directed edges with one face only.
+std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>& faces, std::size_t* edge_count = nullptr) {
+  struct Side {
+    int low, high, from;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * faces.size());
+  for (const auto& f : faces)
+    for (int i = 0; i < 3; ++i) sides.push_back({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3]), f[i]});
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return std::tie(x.low, x.high, x.from) < std::tie(y.low, y.high, y.from);
+  });
+  std::vector<std::array<int, 2>> open;
+  std::size_t edges = 0;
+  for (std::size_t i = 0, j = 0; i < sides.size(); i = j, ++edges) {
+    for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
+    if (j == i + 1) open.push_back({sides[i].from, sides[i].from == sides[i].low ? sides[i].high : sides[i].low});
+  }
+  if (edge_count) *edge_count = edges;
+  return open;
+}
+
+}  // namespace
+
+std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
+  struct OpenEdge {
+    int low_place, high_place, low, high;
+  };
+  VertexSets sets(positions.size());
+  const auto open = open_edges(faces);
+  if (!open.empty()) {
+    const std::vector<int> place = places_of(positions);
+    std::vector<OpenEdge> edges;
+    for (const auto& e : open) {
+      const bool forward = place[e[0]] < place[e[1]];
+      const int low = forward ? e[0] : e[1], high = forward ? e[1] : e[0];
+      if (place[low] != place[high]) edges.push_back({place[low], place[high], low, high});
+    }
+    std::sort(edges.begin(), edges.end(), [](const OpenEdge& x, const OpenEdge& y) {
+      return std::tie(x.low_place, x.high_place, x.low, x.high) < std::tie(y.low_place, y.high_place, y.low, y.high);
+    });
+    for (std::size_t i = 1; i < edges.size(); ++i)
+      if (edges[i].low_place == edges[i - 1].low_place && edges[i].high_place == edges[i - 1].high_place) {
+        sets.join(edges[i].low, edges[i - 1].low);
+        sets.join(edges[i].high, edges[i - 1].high);
+      }
+  }
+  return sets.roots();
+}
+
+std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance) {
+  VertexSets sets(positions.size());
+  std::vector<int> order(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&positions](int v, int w) {
+    return positions[v].x() != positions[w].x() ? positions[v].x() < positions[w].x() : v < w;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Vector3 d = positions[order[j]] - positions[order[i]];
+      if (d.x() > tolerance) break;
+      if (d.norm() <= tolerance) sets.join(order[i], order[j]);
+    }
+  return sets.roots();
+}
+
+double open_edge_share(const std::vector<std::array<int, 3>>& faces) {
+  std::size_t edges = 0;
+  const std::size_t open = open_edges(faces, &edges).size();
+  return edges ? static_cast<double>(open) / static_cast<double>(edges) : 0;
+}
+
+}  // namespace hybrid_quad

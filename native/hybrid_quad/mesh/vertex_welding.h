@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hybrid_quad/base/types.h"
+
+namespace hybrid_quad {
+
+/// For every vertex the vertex it is to be merged into (itself if none). Ends of open edges are merged where another open
+/// edge lies exactly on them, so cracks of an unwelded mesh close while sheets that merely touch stay apart.
+std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);
+
+/// The same for a soup of loose triangles whose corners differ by rounding: corners nearer than `tolerance` merge.
+std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance);
+
+/// Share of edges that have one face only.
+double open_edge_share(const std::vector<std::array<int, 3>>& faces);
+
+}  // namespace hybrid_quad
