@@ -27,12 +27,13 @@ void project_all(const PhaseGraph& graph, std::vector<PhasePair>& z) {
   }
 }
 
-/// Diffusion with projection after every step (Merriman, Bence, Osher 1992), the diffusion time shrinking.
+/// Diffusion with projection after every step (Merriman, Bence, Osher 1992), the diffusion time shrinking: the eigenvector
+/// is small over whole parts of the surface, and says little there (MATH 6.1).
 void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std::vector<PhasePair>& z) {
   double mean = 0;
   for (int i = 0; i < graph.node_count(); ++i) mean += 0.5 * (graph.weight_a[i] + graph.weight_b[i]);
   mean = std::max(mean / std::max(1, graph.node_count()), 1e-300);
-  for (const double share : {0.01, 0.05, 0.2}) {
+  for (const double share : {0.0005, 0.0025, 0.01}) {
     Eigen::SparseMatrix<double> lower = matrix.lower;
     for (Eigen::Index i = 0; i < lower.rows(); ++i) lower.coeffRef(i, i) += share * mean;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(lower);
@@ -46,11 +47,7 @@ void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std
 
 std::vector<PhasePair> solve_coarsest(const PhaseGraph& graph) {
   const PhaseMatrix matrix = assemble_phase_matrix(graph);
-  EigenOptions options;
-  // The exact eigenvector localises; a loose one, spread over the surface, relaxes to lower energy (MATH 6.1).
-  options.tolerance = 0.1;
-  options.basis = 6;
-  std::vector<PhasePair> z = phases_of(graph, matrix, smallest_eigenpair(matrix.lower, options).vector);
+  std::vector<PhasePair> z = phases_of(graph, matrix, smallest_eigenpair(matrix.lower, EigenOptions{}).vector);
   project_all(graph, z);
   diffuse_and_project(graph, matrix, z);
   return z;
