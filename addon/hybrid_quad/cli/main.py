@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import shlex
 import signal
 import sys
@@ -30,11 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parser.parse_args(given)
     except SystemExit as stop:  # argparse has printed usage, help or version
         return int(stop.code or 0)
-    try:
+    with contextlib.suppress(ValueError):  # not in the main thread, where handlers cannot be set
         # A job scheduler's "terminate" is answered like Ctrl-C.
         signal.signal(signal.SIGTERM, _interrupt)
-    except ValueError:
-        pass  # not in the main thread, where handlers cannot be set
     try:
         return int(options.run(options))
     except InputError as error:
@@ -67,8 +66,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="hybrid-quad",
         description="Pure-quad remeshing of surface meshes.",
-        epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal error; "
-        "4 cancelled or time limit. A result file is written only with 0.",
+        epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal "
+        "error; 4 cancelled or time limit. A result file is written only with 0.",
     )
     parser.add_argument("--version", action="version", version=f"hybrid-quad {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")

@@ -27,6 +27,6 @@ def describe_elements(error: InputError) -> str:
     """The elements an error names, in parentheses, or an empty string."""
     names = [str(element) for element in error.elements]
     if error.element_kind == "edge":
-        names = [f"{a}-{b}" for a, b in zip(names[0::2], names[1::2])]
+        names = [f"{a}-{b}" for a, b in zip(names[0::2], names[1::2], strict=True)]
     text = list_elements(error.element_kind, names)
     return f" ({text})" if text else ""

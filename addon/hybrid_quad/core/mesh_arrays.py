@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +30,7 @@ class Polygons(NamedTuple):
     vertices: IntArray
 
 
-FacesLike = Union[Polygons, npt.ArrayLike, Sequence[Sequence[int]]]
+FacesLike = Polygons | npt.ArrayLike | Sequence[Sequence[int]]
 
 
 def as_vertices(vertices: npt.ArrayLike) -> FloatArray:

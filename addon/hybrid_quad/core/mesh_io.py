@@ -175,7 +175,7 @@ def _read_obj(path: Path) -> tuple[FloatArray, Polygons]:
                 face = [int(token) for token in tokens]
             except ValueError:
                 face = [_index_of_corner(token, number) for token in tokens]
-            # Positive indices count from 1, negative ones back from the latest vertex. Index 0 becomes -1: out of range.
+            # Positive indices count from 1, negative ones back from the latest vertex; 0 becomes -1, out of range.
             latest = len(positions) // 3
             corners += [index - 1 if index >= 0 else latest + index for index in face]
             sizes.append(len(face))

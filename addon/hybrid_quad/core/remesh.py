@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from .snapshots import Snapshot, SnapshotFolder
 ProgressCallback = Callable[[str, float], object]
 CancelCallback = Callable[[], bool]
 SnapshotCallback = Callable[[Snapshot], object]
-PathLike = Union[str, "os.PathLike[str]"]
+PathLike = str | os.PathLike[str]
 
 
 @dataclass(frozen=True, eq=False)

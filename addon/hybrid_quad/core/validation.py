@@ -18,8 +18,8 @@ def violations(vertices: npt.ArrayLike, quads: npt.ArrayLike) -> list[str]:
     """What keeps a mesh from being a valid pure-quad mesh; empty for a valid one.
 
     Checked are: finite coordinates, four different corners a face, no unused vertex, edges in one or two faces that run
-    through them in opposite directions, one fan of faces a vertex, three or more faces at an interior vertex, at most one
-    common edge of two faces, and quads with an area.
+    through them in opposite directions, one fan of faces a vertex, three or more faces at an interior vertex, at most
+    one common edge of two faces, and quads with an area.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def topology(faces: FacesLike) -> Topology:
 
 
 def scaled_jacobian(vertices: npt.ArrayLike, quads: npt.ArrayLike) -> FloatArray:
-    """Smallest sine of a quad's corner angles, signed by the quad's normal (Knupp 2000): (m,) in -1..1, 1 is a square."""
+    """Smallest sine of each quad's corner angles, signed by its normal (Knupp 2000): (m,) in -1..1, 1 for a square."""
     corners = as_vertices(vertices)[np.asarray(quads)]
     edge = np.roll(corners, -1, axis=1) - corners
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])

@@ -1,0 +1,184 @@
+import struct
+
+import numpy as np
+import pytest
+from support import surfaces
+
+from hybrid_quad.core import mesh_io
+from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, write_mesh
+
+
+def rows(polygons):
+    ends = np.cumsum(polygons.sizes)
+    return [polygons.vertices[end - size : end].tolist() for end, size in zip(ends, polygons.sizes, strict=True)]
+
+
+def file_with(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+@pytest.mark.parametrize("suffix", mesh_io.WRITABLE)
+def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, suffix):
+    vertices, quads = surfaces.quad_box(3)
+    vertices = vertices * np.pi + [1e6, 1e-9, -1 / 3]
+    path = tmp_path / f"box{suffix}"
+    write_mesh(path, vertices, quads.astype(np.int32))
+    again, polygons = read_mesh(path)
+    assert np.array_equal(again, vertices)
+    assert rows(polygons) == quads.tolist()
+
+
+@pytest.mark.parametrize("suffix", mesh_io.WRITABLE)
+def test_same_mesh_same_bytes(tmp_path, suffix):
+    vertices, quads = surfaces.quad_box(2)
+    for name in ("one", "two"):
+        write_mesh(tmp_path / f"{name}{suffix}", vertices, quads)
+    assert (tmp_path / f"one{suffix}").read_bytes() == (tmp_path / f"two{suffix}").read_bytes()
+
+
+OBJ = """# every kind of corner, polygons of three sizes, more texture coordinates than vertices, a colour
+mtllib some.mtl
+v 0 0 0
+v 1 0 0 0.5 nan 0.5
+v 1 1 0
+v 0 1 0
+v 2 0 0
+v 0 0 0
+vt 0 0
+vt 0 1
+vt 1 1
+vt 1 0
+vt .5 .5
+vt .5 .6
+vt .5 .7
+vn 0 0 1
+f 1 2 3 4
+f 2/1 5/2 3/3
+f 2//1 5//1 \\
+ 3//1
+f 1/1/1 2/2/1 5/3/1 3/4/1 4/5/1
+f -6 -5 -4
+l 1 2
+"""
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_obj_of_every_kind(tmp_path, newline):
+    vertices, polygons = read_mesh(file_with(tmp_path, "kinds.OBJ", OBJ.replace("\n", newline)))
+    assert vertices.tolist()[1] == [1.0, 0.0, 0.0]
+    assert len(vertices) == 6, "coincident vertices stay apart"
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2], [1, 4, 2], [0, 1, 4, 2, 3], [0, 1, 2]]
+
+
+def test_relative_indices_count_from_where_they_stand(tmp_path):
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n"
+    _, polygons = read_mesh(file_with(tmp_path, "a.obj", text))
+    assert rows(polygons) == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_index_zero_of_obj_is_left_for_the_mesh_check(tmp_path):
+    _, polygons = read_mesh(file_with(tmp_path, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"))
+    assert rows(polygons) == [[-1, 0, 1]]
+
+
+def test_off_with_polygons_comments_and_colours(tmp_path):
+    text = "OFF # made by hand\n5 2 0\n\n0 0 0\n1 0 0\n1 1 0\n0 1 0 # corner\n2 0 0\n4 0 1 2 3 255 0 0\n3 1 4 2\n"
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.off", text))
+    assert vertices.shape == (5, 3)
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z
+property uchar red
+element face 2
+property list uchar int vertex_indices
+end_header
+0 0 0 1
+1 0 0 1
+1 1 0 1
+0 1 0 1
+2 0 0 1
+4 0 1 2 3
+3 1 4 2
+"""
+
+
+def test_ply_text_with_polygons(tmp_path):
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.ply", PLY))
+    assert vertices.dtype == np.float64
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
+
+
+def test_binary_stl(tmp_path):
+    triangles = [[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(1, 0, 0), (1, 1, 0), (0, 1, 0)]]
+    content = b"solid misleading".ljust(80) + struct.pack("<I", 2)
+    for triangle in triangles:
+        content += struct.pack("<12fH", 0, 0, 1, *np.ravel(triangle), 0)
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.stl", content))
+    assert [vertices[face].tolist() for face in rows(polygons)] == [np.array(t, float).tolist() for t in triangles]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("a.obj", "v 0 0 0\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n", "zero"),
+        ("a.obj", "v 0 0 0\nv 1 0\n", "line 2"),
+        ("a.obj", "v 0 0 0\nf 1 two 3\n", "line 2"),
+        ("a.off", "OOPS\n", "OFF"),
+        ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends before"),
+        ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "fewer"),
+        ("a.off", "4OFF\n0 0 0\n", "4OFF"),
+        ("a.ply", b"\x00\x01\x02", "PLY"),
+        ("a.ply", PLY[:-12], "PLY"),
+        ("a.stl", b"short", ""),
+        ("a.gltf", b"{}", "gltf"),
+    ],
+)
+def test_damaged_files_are_named_with_the_reason(tmp_path, name, content, reason):
+    path = file_with(tmp_path, name, content)
+    if name == "a.stl":
+        try:
+            _, polygons = read_mesh(path)
+        except MeshFileError as error:
+            assert str(path) in str(error)
+        else:
+            assert len(polygons.sizes) == 0
+        return
+    with pytest.raises(MeshFileError, match=reason) as caught:
+        read_mesh(path)
+    assert str(path) in str(caught.value)
+
+
+def test_missing_files_and_folders(tmp_path):
+    with pytest.raises(MeshFileError, match="No such file"):
+        read_mesh(tmp_path / "none.obj")
+    with pytest.raises(MeshFileError, match="does not exist"):
+        mesh_io.check_writable(tmp_path / "none" / "a.obj")
+    with pytest.raises(MeshFileError, match=r"\.stl"):
+        mesh_io.check_writable(tmp_path / "a.stl")
+    (tmp_path / "folder.obj").mkdir()
+    with pytest.raises(MeshFileError, match="is a folder"):
+        mesh_io.check_writable(tmp_path / "folder.obj")
+
+
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = file_with(tmp_path, "a.obj", "old")
+    with pytest.raises(KeyboardInterrupt), mesh_io.replacing(path) as file:
+        file.write(b"half of the new")
+        raise KeyboardInterrupt
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_edge_file(tmp_path):
+    assert read_edges(file_with(tmp_path, "e.txt", "# pairs\n0 1\n\n 7\t3 # seam\n")).tolist() == [[0, 1], [7, 3]]
+    assert read_edges(file_with(tmp_path, "none.txt", "")).shape == (0, 2)
+    with pytest.raises(MeshFileError, match="line 2"):
+        read_edges(file_with(tmp_path, "bad.txt", "0 1\n2 3 4\n"))

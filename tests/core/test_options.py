@@ -1,0 +1,40 @@
+import math
+
+import pytest
+
+from hybrid_quad import RemeshOptions
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"quads": 0},
+        {"quads": 2.5},
+        {"quads": True},
+        {"quads": 2**31},
+        {"edge_length": 0.0},
+        {"edge_length": math.inf},
+        {"edge_length": math.nan},
+        {"sharp_angle": -1.0},
+        {"sharp_angle": 181.0},
+        {"sharp_angle": math.nan},
+        {"solver": "guess"},
+        {"seed": -1},
+        {"threads": -1},
+        {"time_limit": 0.0},
+        {"time_limit": math.nan},
+    ],
+    ids=str,
+)
+def test_options_that_make_no_sense_are_refused_by_name(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        RemeshOptions(**wrong)
+
+
+def test_native_arguments_carry_every_option():
+    native = RemeshOptions(quads=7, sharp_angle=None, threads=0).for_native()
+    assert native["quads"] == 7
+    assert native["edge_length"] == 0.0
+    assert native["sharp_angle"] is None
+    assert native["threads"] >= 1
+    assert set(native) == set(RemeshOptions.__dataclass_fields__)
