@@ -1,0 +1,198 @@
+"""The command as scripts see it: exit status, files and messages."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from support import surfaces
+
+import hybrid_quad
+from hybrid_quad.cli import exit_codes
+from hybrid_quad.cli.main import main
+from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.validation import violations
+
+
+def write_obj(path, vertices, faces):
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in np.asarray(vertices, float).tolist()]
+    lines += ["f " + " ".join(str(int(v) + 1) for v in face) for face in faces]
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+@pytest.fixture
+def torus(tmp_path):
+    return write_obj(tmp_path / "torus.obj", *surfaces.torus())
+
+
+@pytest.fixture
+def moebius(tmp_path):
+    return write_obj(tmp_path / "moebius.obj", *surfaces.moebius())
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off"])
+def test_remesh_writes_what_the_python_call_gives(tmp_path, torus, suffix):
+    out = tmp_path / f"out{suffix}"
+    assert main(["remesh", torus, str(out), "--quads", "300", "--quiet"]) == exit_codes.OK
+    vertices, polygons = read_mesh(out)
+    expected = hybrid_quad.remesh(*surfaces.torus(), quads=300)
+    assert np.array_equal(vertices, expected.vertices)
+    assert np.array_equal(polygons.vertices.reshape(-1, 4), expected.quads)
+    assert violations(vertices, polygons.vertices.reshape(-1, 4)) == []
+
+
+def test_the_report(tmp_path, torus):
+    report = tmp_path / "report.json"
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "300", "--no-sharp", "--seed", "4"]
+    assert main([*arguments, "--report", str(report)]) == exit_codes.OK
+    made = json.loads(report.read_text())
+    assert made["status"] == "ok"
+    assert made["options"]["sharp_angle"] is None
+    assert (made["options"]["quads"], made["seed"]) == (300, 4)
+
+
+def test_features_from_a_file(tmp_path):
+    vertices, faces = surfaces.grid(20, 20, 2.0, 2.0)
+    mesh = write_obj(tmp_path / "grid.obj", vertices, faces)
+    pairs = [(21 * row + 8, 21 * (row + 1) + 8) for row in range(20)]
+    (tmp_path / "features.txt").write_text("".join(f"{a} {b}\n" for a, b in pairs))
+    out = tmp_path / "out.off"
+    arguments = ["remesh", mesh, str(out), "--quads", "300", "--no-sharp", "--features", str(tmp_path / "features.txt")]
+    assert main(arguments) == exit_codes.OK
+    expected = hybrid_quad.remesh(vertices, faces, quads=300, sharp_angle=None, sharp_edges=pairs)
+    assert np.array_equal(read_mesh(out)[0], expected.vertices)
+
+
+def test_progress_goes_to_the_error_stream_and_quiet_silences_it(tmp_path, torus, capfd):
+    out = str(tmp_path / "out.obj")
+    main(["remesh", torus, out, "--quads", "200"])
+    talkative = capfd.readouterr()
+    assert talkative.out == ""
+    assert "quads" in talkative.err
+    main(["remesh", torus, out, "--quads", "200", "--quiet"])
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_stages_are_dumped(tmp_path, torus):
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "200", "--dump-stages", str(tmp_path / "dump")]
+    assert main(arguments) == exit_codes.OK
+    assert list((tmp_path / "dump").glob("*.vtu"))
+
+
+def unchanged(tmp_path, arguments, status, out="out.obj"):
+    """Runs a command that must fail and leave an old result, and nothing half-written, behind."""
+    target = tmp_path / out
+    target.write_text("old result")
+    files = set(tmp_path.iterdir())
+    assert main(arguments) == status
+    assert target.read_text() == "old result"
+    assert set(tmp_path.iterdir()) == files
+
+
+def test_an_input_that_cannot_be_remeshed(tmp_path, moebius, capfd):
+    unchanged(tmp_path, ["remesh", moebius, str(tmp_path / "out.obj")], exit_codes.CANNOT_REMESH)
+    message = capfd.readouterr().err
+    assert moebius in message
+    assert "non_orientable" in message
+
+
+def test_a_failure_is_in_the_report_too(tmp_path, moebius):
+    report = tmp_path / "report.json"
+    status = main(["remesh", moebius, str(tmp_path / "out.obj"), "--report", str(report)])
+    assert status == exit_codes.CANNOT_REMESH
+    made = json.loads(report.read_text())
+    assert (made["status"], made["code"]) == ("input_error", "non_orientable")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--quads", "0"],
+        ["--quads", "many"],
+        ["--quads", "10", "--edge-length", "1"],
+        ["--sharp-angle", "40", "--no-sharp"],
+        ["--edge-length", "-1"],
+        ["--time-limit", "0"],
+        ["--features", "none.txt"],
+        ["--solver", "guess"],
+        ["--unknown"],
+        ["--report", "no/such/folder/report.json"],
+    ],
+    ids=" ".join,
+)
+def test_wrong_usage(tmp_path, torus, options):
+    unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), *options], exit_codes.WRONG_USAGE)
+
+
+def test_unreadable_files(tmp_path, torus, capfd):
+    out = str(tmp_path / "out.obj")
+    unchanged(tmp_path, ["remesh", str(tmp_path / "none.obj"), out], exit_codes.WRONG_USAGE)
+    assert "none.obj: No such file" in capfd.readouterr().err
+    (tmp_path / "bad.obj").write_text("v 1 2\n")
+    unchanged(tmp_path, ["remesh", str(tmp_path / "bad.obj"), out], exit_codes.WRONG_USAGE)
+    assert "line 1" in capfd.readouterr().err
+    assert main(["remesh", torus, str(tmp_path / "out.xyz")]) == exit_codes.WRONG_USAGE
+    assert main(["remesh", torus, str(tmp_path / "none" / "out.obj")]) == exit_codes.WRONG_USAGE
+
+
+def test_no_command_and_help(capfd):
+    assert main([]) == exit_codes.WRONG_USAGE
+    assert main(["--help"]) == exit_codes.OK
+    assert main(["--version"]) == exit_codes.OK
+    assert hybrid_quad.__version__ in capfd.readouterr().out
+
+
+def test_a_result_that_is_not_valid_is_never_written(tmp_path, torus, capfd, monkeypatch):
+    from hybrid_quad.cli import remesh_command
+
+    monkeypatch.setattr(remesh_command, "violations", lambda *_: ["1 quads without area: [3]"])
+    unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100"], exit_codes.BUG)
+    message = capfd.readouterr().err
+    assert "without area" in message
+    assert "report it" in message
+
+
+def test_the_time_limit(tmp_path, capfd):
+    mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
+    unchanged(
+        tmp_path,
+        ["remesh", mesh, str(tmp_path / "out.obj"), "--quads", "20000", "--time-limit", "1.5"],
+        exit_codes.CANCELLED,
+    )
+    assert "time limit" in capfd.readouterr().err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("after", [0.6, 1.5])
+def test_interrupted_runs_leave_no_file(tmp_path, number, after):
+    mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
+    files = set(tmp_path.iterdir())
+    command = [sys.executable, "-m", "hybrid_quad", "remesh", mesh, str(tmp_path / "out.ply"), "--quads", "20000"]
+    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    time.sleep(after)
+    child.send_signal(number)
+    _, errors = child.communicate(timeout=20)
+    assert child.returncode == exit_codes.CANCELLED, errors
+    assert "nothing was written" in errors
+    assert set(tmp_path.iterdir()) == files
+
+
+def test_check(tmp_path, torus, moebius, capfd):
+    assert main(["check", torus]) == exit_codes.OK
+    assert "nothing is wrong" in capfd.readouterr().out
+    report = tmp_path / "defects.json"
+    assert main(["check", moebius, "--report", str(report)]) == exit_codes.CANNOT_REMESH
+    assert "non_orientable" in capfd.readouterr().out
+    assert json.loads(report.read_text())["defects"][0]["code"] == "non_orientable"
+    vertices, faces = surfaces.torus()
+    turned = faces.copy()
+    turned[5] = turned[5, ::-1]
+    assert main(["check", write_obj(tmp_path / "turned.obj", vertices, turned)]) == exit_codes.OK
+    assert "repaired" in capfd.readouterr().out
+    assert main(["check", str(tmp_path / "none.obj")]) == exit_codes.WRONG_USAGE

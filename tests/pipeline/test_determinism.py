@@ -1,0 +1,63 @@
+"""Same input, same bits: again, with other threads, and beside another run."""
+
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from support import surfaces
+
+import hybrid_quad
+
+TORUS = surfaces.torus(50, 24)
+BOX = surfaces.together(surfaces.box(8), surfaces.wavy_grid(14))
+
+
+def same(one, two):
+    return (
+        np.array_equal(one.vertices, two.vertices)
+        and np.array_equal(one.quads, two.quads)
+        and np.array_equal(one.feature_edges, two.feature_edges)
+        and np.array_equal(one.vertex_kinds, two.vertex_kinds)
+    )
+
+
+@pytest.mark.parametrize("mesh", [TORUS, BOX], ids=["torus", "two_parts"])
+def test_again_and_with_other_threads(mesh):
+    first = hybrid_quad.remesh(*mesh, quads=500, threads=1)
+    for threads in (1, 2, 4):
+        assert same(first, hybrid_quad.remesh(*mesh, quads=500, threads=threads))
+
+
+def test_two_runs_at_once_give_what_they_give_alone():
+    jobs = [(TORUS, 400), (BOX, 500), (TORUS, 700)]
+    alone = [hybrid_quad.remesh(*mesh, quads=quads) for mesh, quads in jobs]
+    with ThreadPoolExecutor(len(jobs)) as pool:
+        together = list(pool.map(lambda job: hybrid_quad.remesh(*job[0], quads=job[1]), jobs))
+    assert all(same(one, two) for one, two in zip(alone, together, strict=True))
+
+
+def test_callbacks_change_nothing():
+    alone = hybrid_quad.remesh(*BOX, quads=400)
+    watched = hybrid_quad.remesh(
+        *BOX, quads=400, progress=lambda stage, fraction: None, cancel=lambda: False, on_snapshot=lambda snapshot: None
+    )
+    assert same(alone, watched)
+
+
+def test_another_process_gives_the_same_bytes(tmp_path):
+    code = (
+        f"import sys; sys.path.insert(0, {str(surfaces.__file__).rsplit('/support/', 1)[0]!r})\n"
+        "from support import surfaces\n"
+        "import hybrid_quad\n"
+        "result = hybrid_quad.remesh(*surfaces.torus(50, 24), quads=400)\n"
+        f"open({str(tmp_path / 'out')!r}, 'wb').write(result.vertices.tobytes() + result.quads.tobytes())\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+    here = hybrid_quad.remesh(*TORUS, quads=400)
+    assert (tmp_path / "out").read_bytes() == here.vertices.tobytes() + here.quads.tobytes()
+
+
+def test_a_seed_is_a_seed():
+    assert same(hybrid_quad.remesh(*TORUS, quads=300, seed=9), hybrid_quad.remesh(*TORUS, quads=300, seed=9))

@@ -1,0 +1,159 @@
+"""Meshes that are no surface, and those that only look like none."""
+
+import numpy as np
+import pytest
+from support import surfaces
+from support.results import assert_sound
+
+import hybrid_quad
+from hybrid_quad.core.validation import violations
+
+TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def with_vertex(value):
+    vertices, faces = surfaces.torus(12, 8)
+    vertices = vertices.copy()
+    vertices[17, 1] = value
+    return vertices, faces
+
+
+REFUSED = {
+    "empty_mesh": ([], []),
+    "empty_mesh (points only)": (TRIANGLE, []),
+    "index_out_of_range": (TRIANGLE, [[0, 1, 7]]),
+    "index_out_of_range (negative)": (TRIANGLE, [[0, 1, -1]]),
+    "non_finite_vertex": with_vertex(np.nan),
+    "non_finite_vertex (infinite)": with_vertex(np.inf),
+    "no_area": (np.zeros((4, 3)), [[0, 1, 2], [0, 2, 3]]),
+    "non_orientable": surfaces.moebius(),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_remeshed_is_refused_by_code(name):
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(*REFUSED[name], quads=100)
+    assert caught.value.code == name.split(" ")[0]
+    assert str(caught.value)
+
+
+def test_the_offending_elements_are_named():
+    vertices, faces = with_vertex(np.nan)
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(vertices, faces)
+    assert (caught.value.element_kind, caught.value.elements) == ("vertex", (17,))
+
+
+def test_a_marked_pair_that_is_no_edge():
+    vertices, faces = surfaces.grid(5, 5)
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(vertices, faces, sharp_edges=[[0, 20]])
+    assert caught.value.code == "unknown_edge"
+
+
+@pytest.mark.parametrize("edges", [[[0, 10**6]], [[-1, 0]]])
+def test_marked_pairs_of_vertices_that_do_not_exist(edges):
+    vertices, faces = surfaces.grid(5, 5)
+    with pytest.raises(hybrid_quad.InputError):
+        hybrid_quad.remesh(vertices, faces, sharp_edges=edges)
+
+
+def fin():
+    vertices, faces = surfaces.sphere(5)
+    a, b = faces[0, :2]
+    tip = vertices[[a, b]].mean(0) * 1.3
+    return np.concatenate([vertices, [tip]]), np.concatenate([faces, [[a, b, len(vertices)]]])
+
+
+def some_faces_turned():
+    vertices, faces = surfaces.torus(16, 10)
+    faces = faces.copy()
+    faces[::3] = faces[::3, ::-1]
+    return vertices, faces
+
+
+def two_bodies_at_one_vertex():
+    vertices, faces = surfaces.sphere(4)
+    other = np.where(faces > 0, faces + len(vertices) - 1, 0)
+    return np.concatenate([vertices, 2 * vertices[0] - vertices[1:]]), np.concatenate([faces, other])
+
+
+def unused_vertices():
+    vertices, faces = surfaces.sphere(4)
+    return np.concatenate([vertices, np.full((20, 3), 50.0)]), faces
+
+
+def faces_twice():
+    vertices, faces = surfaces.sphere(4)
+    return vertices, np.concatenate([faces, faces[:5]])
+
+
+def unwelded():
+    vertices, faces = surfaces.sphere(4)
+    return vertices[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)
+
+
+REPAIRED = {
+    made.__name__: made
+    for made in (fin, some_faces_turned, two_bodies_at_one_vertex, unused_vertices, faces_twice, unwelded)
+}
+
+
+@pytest.mark.parametrize("name", REPAIRED)
+def test_what_can_be_repaired_gives_valid_quads_and_is_reported(name):
+    vertices, faces = REPAIRED[name]()
+    result = hybrid_quad.remesh(vertices, faces, quads=200)
+    assert violations(result.vertices, result.quads) == []
+    assert result.report["defects"]
+    for defect in result.report["defects"]:
+        assert defect["code"]
+        assert defect["repairable"]
+
+
+@pytest.mark.parametrize("name", REPAIRED)
+def test_check_names_what_remesh_repairs(name):
+    defects = hybrid_quad.check(*REPAIRED[name]())
+    assert defects
+    assert all(defect.repairable and defect.remedy for defect in defects)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_check_names_what_remesh_refuses(name):
+    defects = hybrid_quad.check(*REFUSED[name])
+    assert name.split(" ")[0] in [defect.code for defect in defects if not defect.repairable]
+
+
+@pytest.mark.parametrize("mesh", [surfaces.torus(), surfaces.grid(3, 3), surfaces.mixed_polygons()], ids=len)
+def test_check_finds_nothing_wrong_with_a_sound_mesh(mesh):
+    assert hybrid_quad.check(*mesh) == []
+
+
+@pytest.mark.parametrize("faces", [[[0, 1, 2]], [[0, 1, 2], [1, 3, 2]]])
+def test_the_smallest_surfaces(faces):
+    vertices = np.array([*TRIANGLE, [1, 1, 0]], float)[: 2 + len(faces)]
+    assert_sound(hybrid_quad.remesh(vertices, faces, quads=50), faces)
+
+
+def test_a_tetrahedron():
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    assert_sound(hybrid_quad.remesh([*TRIANGLE, [0, 0, 1]], faces, quads=60), faces)
+
+
+def test_input_arrays_stay_as_they_were():
+    vertices, faces = surfaces.torus(12, 8)
+    before = vertices.copy(), faces.copy()
+    hybrid_quad.remesh(vertices, faces, quads=100)
+    assert np.array_equal(vertices, before[0])
+    assert np.array_equal(faces, before[1])
+
+
+def test_other_types_and_layouts_of_arrays():
+    vertices, faces = surfaces.torus(16, 10)
+    usual = hybrid_quad.remesh(vertices, faces, quads=150)
+    for v, f in (
+        (np.asfortranarray(vertices), np.asfortranarray(faces.astype(np.int64))),
+        (vertices.tolist(), faces.tolist()),
+        (vertices.repeat(2, axis=0)[::2], faces.astype(np.uint16)),
+    ):
+        assert np.array_equal(hybrid_quad.remesh(v, f, quads=150).vertices, usual.vertices)
