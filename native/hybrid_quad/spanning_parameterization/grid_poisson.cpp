@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kStiffer = 4;
 constexpr double kStiffest = 1e4;
+constexpr double kResidual = 1e-5;
+constexpr int kMostSteps = 40;
 /// A face below this share of the frame's own area counts as folded.
 constexpr double kThinShare = 0.03;
 
@@ -44,12 +46,13 @@ class SlipProblem {
     if (count_ == 0) return;
     assemble(stiffness, grid);
     context.checkpoint(0.6);
-    if (!analyzed_) factor_.analyzePattern(lower_);
-    analyzed_ = true;
-    factor_.factorize(lower_);
+    if (!factored_) {
+      factor_.compute(lower_);
+      if (factor_.info() != Eigen::Success) return;
+      factored_ = true;
+    }
     context.checkpoint(0.7);
-    if (factor_.info() != Eigen::Success) return;
-    const Eigen::VectorXd change = factor_.solve(right_side_);
+    const Eigen::VectorXd change = improved(factor_.solve(right_side_), context);
     if (!change.allFinite()) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
@@ -104,6 +107,29 @@ class SlipProblem {
     }
   }
 
+  /// Conjugate gradients from x, preconditioned by the first round's factorization: stiffer spots are few and small, so
+  /// that a handful of steps replaces a new factorization.
+  Eigen::VectorXd improved(Eigen::VectorXd x, const RunContext& context) const {
+    Eigen::VectorXd applied = lower_.selfadjointView<Eigen::Lower>() * x;
+    Eigen::VectorXd residual = right_side_ - applied;
+    const double goal = kResidual * right_side_.norm();
+    Eigen::VectorXd solved = factor_.solve(residual), direction = solved;
+    double slope = residual.dot(solved);
+    for (int step = 0; step < kMostSteps && residual.norm() > goal && slope > 0; ++step) {
+      applied = lower_.selfadjointView<Eigen::Lower>() * direction;
+      const double curvature = direction.dot(applied);
+      if (!(curvature > 0)) break;
+      x += (slope / curvature) * direction;
+      residual -= (slope / curvature) * applied;
+      solved = factor_.solve(residual);
+      const double next = residual.dot(solved);
+      direction = solved + (next / slope) * direction;
+      slope = next;
+      context.checkpoint(0.7);
+    }
+    return x;
+  }
+
   const TriangleMesh& mesh_;
   const FrameField& frames_;
   const GridMeasure& measure_;
@@ -114,7 +140,7 @@ class SlipProblem {
   Eigen::SparseMatrix<double> lower_;
   Eigen::VectorXd right_side_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  bool analyzed_ = false;
+  bool factored_ = false;
 };
 
 /// Multiplies the weights of folded faces and of two rings of neighbours.
