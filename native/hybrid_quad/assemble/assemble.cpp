@@ -92,28 +92,13 @@ class Assembler {
   }
 
   void make_vertices() {
-    const int darts = static_cast<int>(out_.opposite.size());
-    out_.vertex.assign(darts, -1);
-    std::vector<int> orbit;
-    for (int start = 0; start < darts; ++start) {
-      if (out_.vertex[start] >= 0) continue;
-      collect_orbit(start, orbit);
-      const int id = static_cast<int>(out_.positions.size());
-      for (const int d : orbit) out_.vertex[d] = id;
-      add_vertex(orbit);
+    out_.vertex = vertex_orbits(out_.opposite);
+    std::vector<std::vector<int>> orbits;
+    for (int d = 0; d < static_cast<int>(out_.vertex.size()); ++d) {
+      if (out_.vertex[d] == static_cast<int>(orbits.size())) orbits.emplace_back();
+      orbits[out_.vertex[d]].push_back(d);
     }
-  }
-
-  /// All darts that leave the same vertex: clockwise to the border if there is one, then counterclockwise.
-  void collect_orbit(int start, std::vector<int>& orbit) const {
-    orbit.assign(1, start);
-    for (int d = out_.opposite[QuadComplex::previous(start)]; d >= 0 && d != start; d = out_.opposite[QuadComplex::previous(d)])
-      orbit.push_back(d);
-    if (out_.opposite[QuadComplex::previous(orbit.back())] == start) return;
-    for (int d = start; out_.opposite[d] >= 0;) {
-      d = QuadComplex::next(out_.opposite[d]);
-      orbit.push_back(d);
-    }
+    for (const std::vector<int>& orbit : orbits) add_vertex(orbit);
   }
 
   void add_vertex(const std::vector<int>& orbit) {

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hybrid_quad/regular_quads/regular_quads.h"
+#include "hybrid_quad/singular_patches/singular_patches.h"
+#include "hybrid_quad/assemble/assemble.h"
+#include "support/grid_surfaces.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+using test::flat_grid;
+using test::surface_of;
+
+struct Scene {
+  WorkingSurface surface;
+  FrameField frames;
+  SpanningParameterization param;
+};
+
+/// A flat rectangle of columns x rows quads, triangulated without regard to the grid, in exact coordinates.
+Scene rectangle(int n, int m, int columns, int rows) {
+  Scene s;
+  s.surface = surface_of(flat_grid(n, m, columns, rows), 1.0);
+  s.frames = test::constant_frames(s.surface, Vector3(1, 0, 0), Vector3(0, 1, 0));
+  // Frames may have been turned while they were combed: measure in what each face has now.
+  const TriangleMesh& mesh = s.surface.mesh;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const auto grid_of = [&](int v) {
+      GridVector out;
+      for (int axis = 0; axis < 2; ++axis) {
+        const Vector3& row = axis ? s.frames.dv[h / 3] : s.frames.du[h / 3];
+        out[axis] = std::llround(row.dot(mesh.position(v)) * kGridUnit);
+      }
+      return out;
+    };
+    const GridVector a = grid_of(mesh.from(h)), b = grid_of(mesh.to(h));
+    s.param.corner_uv.push_back(a);
+    s.param.halfedge_uv.push_back({b[0] - a[0], b[1] - a[1]});
+  }
+  s.param.charge.assign(mesh.face_count(), {0, 0});
+  s.param.is_regular.assign(mesh.face_count(), 1);
+  s.param.is_grid_vertex.assign(mesh.vertex_count(), 0);
+  return s;
+}
+
+TEST(RegularQuads, CoverARectangleWhateverItsTriangles) {
+  for (const auto& [n, m] : {std::pair{7, 5}, {3, 2}, {12, 9}, {24, 18}, {1, 1}}) {
+    const Scene s = rectangle(n, m, 12, 9);
+    const RegularQuads q = extract_regular_quads(s.surface, s.frames, s.param, RunContext{});
+    EXPECT_TRUE(violations_of(q).empty());
+    EXPECT_EQ(q.side.size(), 108u) << n << " x " << m;
+    for (const int cell : q.piece_cell) EXPECT_GE(cell, 0);
+  }
+}
+
+TEST(RegularQuads, OverlayKeepsTheArea) {
+  const Scene s = rectangle(7, 5, 12, 9);
+  const RegularQuads q = extract_regular_quads(s.surface, s.frames, s.param, RunContext{});
+  double area = 0;
+  for (int p = 0; p < q.overlay.piece_count(); ++p) {
+    const auto point = [&](int k) { return q.overlay.vertices[q.overlay.origin[k]].position; };
+    const int b = q.overlay.piece_begin[p];
+    for (int k = b + 1; k + 1 < q.overlay.piece_begin[p + 1]; ++k) area += (point(k) - point(b)).cross(point(k + 1) - point(b))[2] / 2;
+  }
+  EXPECT_NEAR(area, 108, 1e-9);
+}
+
+/// Whatever faces lose their parameterization, patches fill the hole and the whole stays a disk with the same border.
+TEST(RegularQuads, PatchesFillWhatIsNotRegular) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 20; ++round) {
+    Scene s = rectangle(15, 12, 10, 8);
+    for (char& r : s.param.is_regular) r = random() % 100 < 90 - 4u * static_cast<unsigned>(round);
+    RegularQuads q = extract_regular_quads(s.surface, s.frames, s.param, RunContext{});
+    EXPECT_TRUE(violations_of(q).empty());
+    EXPECT_LT(q.side.size(), 80u);
+    const SingularPatches patches = fill_singular_patches(s.surface, s.param, q, PatchOptions{}, RunContext{});
+    const QuadComplex complex = assemble_quads(s.surface, q, patches);
+    EXPECT_TRUE(violations_of(complex).empty());
+    EXPECT_EQ(euler_characteristic(complex), 1);
+    int border = 0;
+    for (const int o : complex.opposite) border += o < 0;
+    EXPECT_EQ(border, 36);
+    // The function is the same with or without a parameterization, so the quads are too.
+    EXPECT_EQ(complex.quad_count(), 80);
+    for (const FilledPatch& p : patches.patches) EXPECT_FALSE(p.combinatorial) << p.rejected.front();
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_quad
