@@ -1,0 +1,182 @@
+#include "hybrid_quad/working_surface/surface_remesher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kLong = 4.0 / 3;   ///< of the aimed length: edges beyond are split
+constexpr double kShort = 4.0 / 5;  ///< edges below are collapsed
+constexpr int kRounds = 5;
+constexpr int kFinalRounds = 3;
+
+}  // namespace
+
+SurfaceRemesher::SurfaceRemesher(const TriangleMesh& input, const FeatureGraph& features,
+                                 const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
+                                 const RunContext& context)
+    : context_(context),
+      options_(options),
+      input_region_(features.face_region),
+      index_(input, features.face_region),
+      mesh_(input, features.halfedge_curve, features.face_region),
+      vertex_(input.vertex_count()) {
+  for (int v = 0; v < input.vertex_count(); ++v) {
+    VertexData& d = vertex_[v];
+    d.target = target_length[v];
+    d.input = v;
+    d.hint = input.outgoing(v) / 3;
+    d.on_feature = features.on_feature[v];
+    d.is_corner = features.is_corner[v];
+  }
+  for (const FeatureCurve& c : features.curves) {
+    curve_edges_.push_back(static_cast<int>(c.vertices.size()) - 1);
+    curve_is_loop_.push_back(c.vertices.front() == c.vertices.back());
+    curve_originals_.push_back(static_cast<int>(c.vertices.size()) - (c.closed ? 1 : 2));
+  }
+}
+
+void SurfaceRemesher::run() {
+  flip_edges();
+  // Shortest edges first, coarsely: collapses of a level see edges of much the same length.
+  for (const double part : {0.125, 0.25, 0.5, 1.0}) collapse_short_edges(part * kShort);
+  progress_ = 0.4;
+  split_feature_edges();
+  for (int round = 0; round < kRounds; ++round) {
+    split_long_edges(kLong);
+    flip_edges();
+    collapse_short_edges(kShort);
+    flip_edges();
+    relax();
+    progress_ = 0.4 + 0.4 * (round + 1) / kRounds;
+    context_.checkpoint(progress_);
+  }
+  final_phase_ = true;
+  for (int round = 0; round < kFinalRounds; ++round) {
+    split_feature_edges();
+    split_edges_between_features();
+    split_long_edges(kLong);
+    flip_edges();
+    collapse_short_edges(round + 1 < kFinalRounds ? kShort : 0.5);
+    flip_edges();
+    relax();
+    relax();
+  }
+  // The last word: the contract's limits, whatever it does to the triangles' shape.
+  split_feature_edges();
+  split_edges_between_features();
+  flip_edges();
+  relax();
+  context_.checkpoint(0.95);
+}
+
+void SurfaceRemesher::collapse_short_edges(double longest) {
+  for (int h = 0; h < mesh_.halfedge_slots(); ++h) {
+    if (!stands_for_edge(h)) continue;
+    checkpoint();
+    const double aim = is_feature(h) ? 0.9 * options_.feature_edge_limit : options_.edge_fraction;
+    const double limit = longest * aim * edge_target(h);
+    if (mesh_.edge_vector(h).squaredNorm() >= limit * limit) continue;
+    const int o = mesh_.opposite(h);
+    // The end that is freer moves; among equals the one with more faces stays.
+    const VertexData &a = vertex_[mesh_.from(h)], &b = vertex_[mesh_.to(h)];
+    const int rank_a = a.is_corner ? 2 : a.on_feature, rank_b = b.is_corner ? 2 : b.on_feature;
+    if (rank_a <= rank_b && try_collapse(h)) continue;
+    if (o >= 0 && rank_b <= rank_a) try_collapse(o);
+  }
+}
+
+void SurfaceRemesher::split_long_edges(double longest) {
+  struct Long {
+    double length2;
+    int halfedge;
+  };
+  std::vector<Long> edges;
+  constexpr int kMaxPasses = 40;
+  for (int pass = 0, begin = 0; pass < kMaxPasses; ++pass) {
+    edges.clear();
+    for (int h = begin; h < mesh_.halfedge_slots(); ++h) {
+      if (!stands_for_edge(h) || is_feature(h)) continue;
+      const double length2 = mesh_.edge_vector(h).squaredNorm(), limit = longest * options_.edge_fraction * edge_target(h);
+      if (length2 > limit * limit) edges.push_back({length2, h});
+    }
+    if (edges.empty()) return;
+    std::sort(edges.begin(), edges.end(), [](const Long& x, const Long& y) {
+      return x.length2 != y.length2 ? x.length2 > y.length2 : x.halfedge < y.halfedge;
+    });
+    // Only the longest third of the lengths in one pass: splitting long sides first keeps the new triangles compact.
+    const double least = edges.front().length2 * 0.25;
+    for (const Long& e : edges) {
+      if (e.length2 < least) break;
+      checkpoint();
+      split(e.halfedge, 0.5);
+    }
+    flip_edges();
+  }
+}
+
+/// Splits feature edges into equal parts no longer than the limit, and curves with too few edges once more.
+void SurfaceRemesher::split_feature_edges() {
+  for (int h = 0; h < mesh_.halfedge_slots(); ++h) {
+    if (!stands_for_edge(h) || !is_feature(h)) continue;
+    checkpoint();
+    const double limit = options_.feature_edge_limit * edge_target(h);
+    const int c = mesh_.curve(h);
+    const int needed = curve_is_loop_[c] ? 4 : 2;
+    const double length = mesh_.edge_vector(h).norm();
+    int parts = static_cast<int>(std::min(1e6, std::ceil(length / limit * (1 - 1e-9))));
+    if (curve_edges_[c] < needed) parts = std::max(parts, needed - curve_edges_[c] + 1);
+    // h shrinks to its first part; the rest is the new edge that leaves its end.
+    for (int k = h; parts > 1; --parts) {
+      const int m = split(k, 1.0 / parts);
+      int rest = -1;
+      mesh_.visit_outgoing(m, [&](int g) {
+        if (mesh_.curve(g) == c && mesh_.to(g) != mesh_.from(k)) rest = g;
+        const int p = EditableMesh::previous(g);
+        if (mesh_.opposite(p) < 0 && mesh_.curve(p) == c && mesh_.from(p) != mesh_.from(k)) rest = p;
+      });
+      if (rest < 0 || mesh_.from(rest) != m) break;
+      k = rest;
+    }
+  }
+}
+
+void SurfaceRemesher::split_edges_between_features() {
+  for (int h = 0; h < mesh_.halfedge_slots(); ++h)
+    if (stands_for_edge(h) && joins_features(h)) {
+      checkpoint();
+      split(h, 0.5);
+    }
+}
+
+/// Towards the Delaunay triangulation, where that does not move the surface.
+void SurfaceRemesher::flip_edges() {
+  std::vector<int> stack;
+  for (int h = mesh_.halfedge_slots() - 1; h >= 0; --h)
+    if (stands_for_edge(h) && wants_flip(h)) stack.push_back(h);
+  long long flips_left = 4LL * mesh_.halfedge_slots();
+  while (!stack.empty() && flips_left > 0) {
+    const int h = stack.back();
+    stack.pop_back();
+    checkpoint();
+    if (!wants_flip(h) || !mesh_.can_flip(h) || !flip_keeps_shape(h)) continue;
+    const int o = mesh_.opposite(h);
+    mesh_.flip_edge(h);
+    --flips_left;
+    for (const int k : {EditableMesh::next(h), EditableMesh::previous(h), EditableMesh::next(o), EditableMesh::previous(o)})
+      stack.push_back(k);
+  }
+}
+
+void SurfaceRemesher::relax() {
+  for (int v = 0; v < mesh_.vertex_slots(); ++v) {
+    if (!mesh_.is_vertex(v) || vertex_[v].on_feature) continue;
+    checkpoint();
+    relax_vertex(v);
+  }
+}
+
+}  // namespace hybrid_quad

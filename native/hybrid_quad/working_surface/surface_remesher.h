@@ -1,0 +1,76 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/mesh/editable_mesh.h"
+#include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/working_surface/working_surface.h"
+
+namespace hybrid_quad {
+
+/// Isotropic remeshing by local operations (Botsch & Kobbelt 2004) that knows feature curves: their vertices stay on
+/// them, corners stay where they are.
+class SurfaceRemesher {
+ public:
+  SurfaceRemesher(const TriangleMesh& input, const FeatureGraph& features, const std::vector<double>& target_length,
+                  const WorkingSurfaceOptions& options, const RunContext& context);
+
+  void run();
+
+  const EditableMesh& mesh() const { return mesh_; }
+  double target_length(int v) const { return vertex_[v].target; }
+  int input_vertex(int v) const { return vertex_[v].input; }
+
+ private:
+  struct VertexData {
+    double target = 1;    ///< h
+    double error = 0;     ///< bound of how far what was collapsed here lies from the surface
+    int input = -1;       ///< input vertex, as long as it was not moved
+    int hint = -1;        ///< an input face near by
+    bool on_feature = false;
+    bool is_corner = false;
+  };
+
+  double edge_target(int h) const { return 0.5 * (vertex_[mesh_.from(h)].target + vertex_[mesh_.to(h)].target); }
+  bool is_feature(int h) const { return mesh_.curve(h) >= 0; }
+  bool stands_for_edge(int h) const { return mesh_.is_face(h / 3) && (mesh_.opposite(h) < 0 || h < mesh_.opposite(h)); }
+  bool joins_features(int h) const {
+    return !is_feature(h) && vertex_[mesh_.from(h)].on_feature && vertex_[mesh_.to(h)].on_feature;
+  }
+  void checkpoint() { if ((++work_ & 0x3fff) == 0) context_.checkpoint(progress_); }
+
+  // Passes over the mesh.
+  void collapse_short_edges(double longest);
+  void split_long_edges(double longest);
+  void split_feature_edges();
+  void split_edges_between_features();
+  void flip_edges();
+  void relax();
+
+  // One operation.
+  int split(int h, double at);
+  bool try_collapse(int h);
+  bool may_leave_curve_vertex(int h) const;
+  bool keeps_feature_distance(int h) const;
+  bool keeps_shape(int h, double& error) const;
+  bool wants_flip(int h) const;
+  bool flip_keeps_shape(int h) const;
+  void relax_vertex(int v);
+  bool move_keeps_shape(int v, const Vector3& p) const;
+  SurfacePoint project(int v, const Vector3& p) const;
+  Vector3 fan_normal(int v) const;
+
+  const RunContext& context_;
+  WorkingSurfaceOptions options_;
+  const std::vector<int>& input_region_;
+  SurfaceIndex index_;
+  EditableMesh mesh_;
+  std::vector<VertexData> vertex_;
+  std::vector<int> curve_edges_, curve_originals_;  ///< edges of each curve; input vertices left inside it
+  std::vector<char> curve_is_loop_;
+  bool final_phase_ = false;  ///< no operation may join two feature vertices any more
+  unsigned work_ = 0;
+  double progress_ = 0;
+};
+
+}  // namespace hybrid_quad
