@@ -2,10 +2,10 @@ import struct
 
 import numpy as np
 import pytest
-from support import surfaces
 
 from hybrid_quad.core import mesh_io
 from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, write_mesh
+from support import surfaces
 
 
 def rows(polygons):

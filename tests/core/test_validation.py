@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
-from support import surfaces
 
 from hybrid_quad.core.validation import scaled_jacobian, topology, violations
+from support import surfaces
 
 
 def lattice(columns=3, rows=3):

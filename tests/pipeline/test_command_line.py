@@ -9,13 +9,13 @@ import time
 
 import numpy as np
 import pytest
-from support import surfaces
 
 import hybrid_quad
 from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
+from support import surfaces
 
 
 def write_obj(path, vertices, faces):

@@ -6,9 +6,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from support import surfaces
 
 import hybrid_quad
+from support import surfaces
 
 TORUS = surfaces.torus(50, 24)
 BOX = surfaces.together(surfaces.box(8), surfaces.wavy_grid(14))

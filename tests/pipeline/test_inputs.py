@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from support import surfaces
-from support.results import assert_sound
 
 import hybrid_quad
 from hybrid_quad.core.validation import violations
+from support import surfaces
+from support.results import assert_sound
 
 TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 

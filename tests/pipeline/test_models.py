@@ -4,11 +4,11 @@ import csv
 from pathlib import Path
 
 import pytest
-from support.results import assert_sound
 
 import hybrid_quad
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
+from support.results import assert_sound
 
 HERE = Path(__file__).resolve().parents[1] / "data" / "meshes"
 COLLECTION = Path(__file__).resolve().parents[3] / "shared" / "meshes"

@@ -4,12 +4,12 @@ import json
 
 import numpy as np
 import pytest
-from support import surfaces
-from support.results import assert_sound, distance_to_edges
 
 import hybrid_quad
 from hybrid_quad.core import report
 from hybrid_quad.core.validation import scaled_jacobian
+from support import surfaces
+from support.results import assert_sound, distance_to_edges
 
 SURFACES = {
     "sphere": surfaces.sphere(10),
@@ -24,6 +24,12 @@ SURFACES = {
     "open_and_closed": surfaces.together(surfaces.sphere(6), surfaces.grid(8, 8)),
     "quads": surfaces.quad_box(6),
     "mixed_polygons": surfaces.mixed_polygons(),
+}
+
+REPORT_FIELDS = {
+    *("status", "quads", "vertices", "irregular_vertices", "field_singularities", "dislocations"),
+    *("singular_area_fraction", "patches", "scaled_jacobian", "hausdorff_percent", "feature_hausdorff_percent"),
+    *("stages", "warnings", "seed", "version", "options"),
 }
 
 
@@ -95,11 +101,7 @@ def test_the_report_has_every_field_and_fits_json():
     vertices, faces = SURFACES["box"]
     result = hybrid_quad.remesh(vertices, faces, quads=300, seed=5)
     made = json.loads(report.as_text(result.report))
-    for field in (
-        "status quads vertices irregular_vertices field_singularities dislocations singular_area_fraction patches "
-        "scaled_jacobian hausdorff_percent feature_hausdorff_percent stages warnings seed version options"
-    ).split():
-        assert field in made
+    assert set(made) >= REPORT_FIELDS
     assert made["status"] == "ok"
     assert set(made["scaled_jacobian"]) == {"mean", "p1", "min"}
     assert -1 <= made["scaled_jacobian"]["min"] <= made["scaled_jacobian"]["p1"] <= 1

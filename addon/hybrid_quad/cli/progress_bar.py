@@ -7,20 +7,23 @@ from types import TracebackType
 
 from tqdm import tqdm
 
+from .messages import say
+
 
 class ProgressBar:
-    """A bar for :func:`hybrid_quad.remesh`'s `progress`, shown while the object is used as a context."""
+    """Receives :func:`hybrid_quad.remesh`'s `progress` while it is used as a context.
+
+    A terminal shows a bar that vanishes at the end, a log file a line for each stage.
+    """
 
     def __init__(self, quiet: bool) -> None:
-        self._bar = tqdm(
-            total=100,
-            disable=quiet,
-            file=sys.stderr,
-            leave=False,
-            # A log file gets a line now and then, a terminal a bar that moves.
-            mininterval=0.1 if sys.stderr.isatty() else 5.0,
-            bar_format="{desc:<28} {percentage:3.0f}% |{bar}| {elapsed}",
-        )
+        self._quiet = quiet
+        self._stage = ""
+        self._bar: tqdm[None] | None = None
+        if not quiet and sys.stderr.isatty():
+            self._bar = tqdm(
+                total=100, file=sys.stderr, leave=False, bar_format="{desc:<28} {percentage:3.0f}% |{bar}| {elapsed}"
+            )
 
     def __enter__(self) -> ProgressBar:
         return self
@@ -28,9 +31,14 @@ class ProgressBar:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._bar.close()
+        if self._bar is not None:
+            self._bar.close()
 
     def update(self, stage: str, fraction: float) -> None:
         """Shows a stage and the fraction of the whole run."""
-        self._bar.set_description_str(stage.replace("_", " "), refresh=False)
-        self._bar.update(100 * fraction - self._bar.n)
+        if self._bar is not None:
+            self._bar.set_description_str(stage.replace("_", " "), refresh=False)
+            self._bar.update(100 * fraction - self._bar.n)
+        elif not self._quiet and stage != self._stage:
+            say(f"{100 * fraction:3.0f}% {stage.replace('_', ' ')}")
+        self._stage = stage
