@@ -1,0 +1,265 @@
+"""Remeshing from a shell: what ``batch.py`` and, from Blender 4.2 on, ``blender -c hybrid_quad`` do."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import math
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import bpy
+
+from ..cli import exit_codes
+from ..core import report
+from ..core.errors import Cancelled, InputError, InternalError
+from ..core.mesh_io import MeshFileError, replacing
+from ..core.options import RemeshOptions
+from .operators import message_of
+from .remesh_task import RemeshTask, prepare_task
+from .result_mesh import place_result
+
+NAME = "hybrid_quad"
+
+# Blender's handle of the registered command, kept because only it can take the command away.
+_handles: list[Any] = []
+
+
+def register() -> None:
+    """Adds the command where Blender knows commands (4.2)."""
+    if hasattr(bpy.utils, "register_cli_command"):
+        _handles.append(bpy.utils.register_cli_command(NAME, main))
+
+
+def unregister() -> None:
+    """Takes the command away again."""
+    while _handles:
+        bpy.utils.unregister_cli_command(_handles.pop())
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Remeshes one object of the open file, saves the file under another name, and returns the exit status.
+
+    Nothing is written unless the run succeeds, except a report that says why it did not.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        See ``--help``.
+    """
+    try:
+        options = _parser().parse_args(list(arguments))
+    except SystemExit as stop:  # argparse has printed usage or help
+        return int(stop.code or 0)
+    asked: RemeshOptions | None = None
+    try:
+        with _interruptible():
+            obj = _find_object(options.object)
+            _check_output(options.output)
+            _apply_settings(obj, options)
+            task = _prepare(obj, options)
+            asked = task.options
+            result = task.solve(progress=_printer(options.quiet))
+            target = place_result(bpy.context, obj, task, result)
+            record = {**result.report, "object": target.name, "source_object": obj.name}
+            _write_report(options.report, record)
+            _save(options.output)
+    except Exception as error:
+        return _fail(options, asked, error)
+    except KeyboardInterrupt:
+        return _fail(options, asked, Cancelled("interrupted"))
+    if not options.quiet:
+        print(_summary(options, record), flush=True)
+    return exit_codes.OK
+
+
+class UsageError(Exception):
+    """Arguments that name something that is not there."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="hybrid_quad",
+        description="Turns an object's surface into pure quads and saves the file under another name. What is not "
+        "given here is taken from the object's own settings.",
+        epilog="Exit status: 0 done; 1 the object cannot be remeshed; 2 wrong usage; 3 internal error; 4 cancelled or "
+        "time limit. The output is written only with 0.",
+    )
+    parser.add_argument("--object", required=True, metavar="NAME", help="mesh object to remesh")
+    parser.add_argument("--output", required=True, metavar="OUT.blend", help="file to save the result to")
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--quads", type=_positive_integer, metavar="N", help="number of quads to aim at")
+    size.add_argument("--edge-length", type=_positive_number, metavar="L", help="length of the quads' edges, in scene units")
+    sharp = parser.add_mutually_exclusive_group()
+    sharp.add_argument("--sharp-angle", type=_angle, metavar="DEG", help="keep edges that bend by more than this")
+    sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary and marked edges")
+    marked = parser.add_mutually_exclusive_group()
+    marked.add_argument("--marked-sharp", dest="marked_sharp", action="store_true", default=None, help="keep marked sharp edges")
+    marked.add_argument("--no-marked-sharp", dest="marked_sharp", action="store_false", help="do not")
+    parser.add_argument("--seams", action="store_true", default=None, help="keep UV seams")
+    place = parser.add_mutually_exclusive_group()
+    place.add_argument("--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object")
+    place.add_argument("--replace", dest="result_mode", action="store_const", const="REPLACE", help="result in place")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="same seed, same result (default 0)")
+    parser.add_argument("--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it")
+    parser.add_argument("--time-limit", type=_positive_number, metavar="SECONDS", help="stop with status 4 after this time")
+    parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
+    parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
+    return parser
+
+
+def _positive_integer(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not 1 or more")
+    return value
+
+
+def _positive_number(text: str) -> float:
+    value = float(text)
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
+    return value
+
+
+def _angle(text: str) -> float:
+    value = float(text)
+    if not 0 <= value <= 180:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and 180 degrees")
+    return value
+
+
+def _find_object(name: str) -> bpy.types.Object:
+    obj = bpy.context.view_layer.objects.get(name)
+    if obj is None:
+        meshes = sorted(each.name for each in bpy.context.view_layer.objects if each.type == "MESH")
+        known = ", ".join(f'"{each}"' for each in meshes) or "none"
+        raise UsageError(f'no object "{name}" in the view layer "{bpy.context.view_layer.name}"; mesh objects are: {known}')
+    if obj.type != "MESH":
+        raise UsageError(f'"{name}" is no mesh object but a {obj.type.lower()}')
+    if obj.library is not None:
+        raise UsageError(f'"{name}" is linked from another file')
+    return obj
+
+
+def _check_output(path: str) -> None:
+    folder = os.path.dirname(os.path.abspath(path))
+    if not path.endswith(".blend"):
+        raise UsageError(f"{path}: the output is a Blender file, so its name has to end in .blend")
+    if not os.path.isdir(folder):
+        raise UsageError(f"{path}: the folder {folder} does not exist")
+    if os.path.isdir(path) or not os.access(folder, os.W_OK):
+        raise UsageError(f"{path}: cannot be written")
+
+
+def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
+    settings = obj.hybrid_quad
+    if options.quads is not None:
+        settings.target_mode, settings.quads = "COUNT", options.quads
+    if options.edge_length is not None:
+        settings.target_mode, settings.edge_length = "LENGTH", options.edge_length
+    if options.sharp_angle is not None:
+        settings.use_sharp_angle, settings.sharp_angle = True, math.radians(options.sharp_angle)
+    if options.no_sharp:
+        settings.use_sharp_angle = False
+    if options.marked_sharp is not None:
+        settings.use_marked_sharp = options.marked_sharp
+    if options.seams is not None:
+        settings.use_seams = options.seams
+    if options.result_mode is not None:
+        settings.result_mode = options.result_mode
+
+
+def _prepare(obj: bpy.types.Object, options: argparse.Namespace) -> RemeshTask:
+    if obj.mode != "OBJECT":
+        # A file saved in Edit Mode opens in it; what was edited reaches the mesh on the way out.
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.mode_set(mode="OBJECT")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return prepare_task(obj, depsgraph, seed=options.seed, threads=options.threads, time_limit=options.time_limit)
+
+
+def _save(path: str) -> None:
+    preferences = bpy.context.preferences.filepaths
+    versions = preferences.save_version
+    preferences.save_version = 0  # no ".blend1" beside an output that is written again
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(path), copy=True, compress=True, check_existing=False)
+    except RuntimeError as error:
+        raise MeshFileError(f"{path}: {str(error).strip()}") from error
+    finally:
+        preferences.save_version = versions
+
+
+def _write_report(path: str | None, record: dict[str, Any]) -> None:
+    if path:
+        with replacing(path) as file:
+            file.write(report.as_text(record).encode())
+
+
+def _fail(options: argparse.Namespace, asked: RemeshOptions | None, error: Exception) -> int:
+    from .. import __version__
+
+    status, code = _STATUS_OF_ERROR.get(type(error), ("internal_error", exit_codes.BUG))
+    if isinstance(error, Cancelled):
+        status = error.code
+    say_error = str(error) if code == exit_codes.WRONG_USAGE else message_of(error)
+    print(f"hybrid_quad: {options.object}: {say_error}", file=sys.stderr, flush=True)
+    with contextlib.suppress(MeshFileError):
+        _write_report(options.report, report.failed(status, error, asked, __version__))
+    return code
+
+
+_STATUS_OF_ERROR: dict[type, tuple[str, int]] = {
+    InputError: ("input_error", exit_codes.CANNOT_REMESH),
+    UsageError: ("wrong_usage", exit_codes.WRONG_USAGE),
+    MeshFileError: ("unwritable_file", exit_codes.WRONG_USAGE),
+    ValueError: ("wrong_usage", exit_codes.WRONG_USAGE),
+    Cancelled: ("cancelled", exit_codes.CANCELLED),
+    InternalError: ("internal_error", exit_codes.BUG),
+}
+
+
+def _printer(quiet: bool) -> Callable[[str, float], None] | None:
+    if quiet:
+        return None
+    shown = [""]
+
+    def show(stage: str, fraction: float) -> None:
+        if stage != shown[0]:
+            shown[0] = stage
+            print(f"hybrid_quad: {100 * fraction:3.0f} % {stage.replace('_', ' ')}", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _summary(options: argparse.Namespace, record: dict[str, Any]) -> str:
+    lines = [f"hybrid_quad: warning: {warning}" for warning in record["warnings"]]
+    quality = record["scaled_jacobian"]
+    lines.append(
+        f"hybrid_quad: {options.output}: \"{record['object']}\" has {record['quads']} quads, "
+        f"{record['irregular_vertices']} irregular vertices, scaled Jacobian {quality['mean']:.3f} in the mean and "
+        f"{quality['min']:.3f} at worst"
+    )
+    return "\n".join(lines)
+
+
+@contextlib.contextmanager
+def _interruptible() -> Iterator[None]:
+    """Ctrl-C and "terminate" raise KeyboardInterrupt; Blender's own handlers would ignore or end it without cleaning up."""
+
+    def interrupt(_number: int, _frame: Any) -> None:
+        raise KeyboardInterrupt
+
+    former = {}
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with contextlib.suppress(ValueError):  # not in the main thread
+            former[number] = signal.signal(number, interrupt)
+    try:
+        yield
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, handler if handler is not None else signal.SIG_DFL)

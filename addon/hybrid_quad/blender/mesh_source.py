@@ -1,0 +1,115 @@
+"""From a Blender object to arrays: the mesh as the viewport shows it, in the size it has in the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+from ..core.mesh_arrays import FloatArray, IntArray, Polygons
+from . import edge_marks
+
+_FLATTEST = 1e-9  # ratio of the smallest to the largest scale below which no way back exists
+
+
+@dataclass(frozen=True)
+class MeshSource:
+    """A copy of all that a run needs of an object; holds nothing of Blender's own except the materials.
+
+    Attributes
+    ----------
+    linear : (3, 3) float64
+        Object space to world space, without the translation.
+    vertices : (n, 3) float64
+        In world space, with the object's origin in the origin, so that quads come out even under any scale.
+    polygons : Polygons
+        Wound as they look in the world: a mirrored object's polygons are reversed.
+    edges : (k, 2) int32
+    marks : (k,) uint8
+        Which of `edge_marks` each edge carries.
+    face_materials, face_smooth : (#F,)
+        Material slot and smooth shading of each polygon.
+    materials : list
+        The material (or None) of each slot.
+    """
+
+    linear: FloatArray
+    vertices: FloatArray
+    polygons: Polygons
+    edges: IntArray
+    marks: npt.NDArray[np.uint8]
+    face_materials: IntArray
+    face_smooth: npt.NDArray[np.bool_]
+    materials: list[Any]
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether the object's transform turns the surface inside out."""
+        return bool(np.linalg.det(self.linear) < 0)
+
+    def to_object_space(self, points: FloatArray) -> FloatArray:
+        """Points of the run's space, in the object's own."""
+        return np.linalg.solve(self.linear, points.T).T
+
+
+def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshSource:
+    """Copies an object's evaluated mesh, modifiers applied.
+
+    Raises
+    ------
+    InputError
+        ``not_evaluated``, ``no_faces`` or ``flat_scale``.
+    """
+    evaluated = obj.evaluated_get(depsgraph)
+    if not evaluated.is_evaluated:
+        raise InputError(
+            "not_evaluated", f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown'
+        )
+    linear = np.array(evaluated.matrix_world.to_3x3(), np.float64)
+    scales = np.linalg.svd(linear, compute_uv=False)
+    if not np.isfinite(linear).all() or scales[2] <= _FLATTEST * scales[0]:
+        raise InputError("flat_scale", f'"{obj.name}" is scaled to zero along an axis, so it has no surface to remesh')
+    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    try:
+        if not mesh.polygons:
+            raise InputError("no_faces", f'"{obj.name}" has no faces')
+        return _copy_of(mesh, linear)
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
+    points = _read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    starts = _read(mesh.polygons, "loop_start", np.int32)
+    sizes = _read(mesh.polygons, "loop_total", np.int32)
+    corners = _read(mesh.loops, "vertex_index", np.int32)
+    order = _corner_order(starts, sizes, is_reversed=bool(np.linalg.det(linear) < 0))
+    return MeshSource(
+        linear=linear,
+        vertices=points.reshape(-1, 3) @ linear.T,
+        polygons=Polygons(sizes, np.ascontiguousarray(corners[order])),
+        edges=_read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2),
+        marks=edge_marks.read(mesh),
+        face_materials=_read(mesh.polygons, "material_index", np.int32),
+        face_smooth=_read(mesh.polygons, "use_smooth", np.bool_),
+        materials=[material.original if material else None for material in mesh.materials],
+    )
+
+
+def _corner_order(starts: IntArray, sizes: IntArray, is_reversed: bool) -> npt.NDArray[np.int64]:
+    """Loop of every corner, polygon by polygon."""
+    first_corner = np.cumsum(sizes, dtype=np.int64) - sizes
+    within = np.arange(int(sizes.sum())) - np.repeat(first_corner, sizes)
+    if is_reversed:
+        within = np.repeat(sizes.astype(np.int64) - 1, sizes) - within
+    return np.repeat(starts.astype(np.int64), sizes) + within
+
+
+def _read(collection: Any, name: str, dtype: type, width: int = 1) -> Any:
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(name, values)
+    return values

@@ -1,0 +1,133 @@
+"""The tab "Hybrid Quad" of the 3D view's sidebar."""
+
+from __future__ import annotations
+
+import importlib.util
+from typing import Any
+
+import bpy
+
+from .operators import OBJECT_OT_hybrid_quad_remesh
+from .result_mesh import read_report
+
+
+class _HybridQuadPanel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Hybrid Quad"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.object is not None and context.object.type == "MESH"
+
+
+class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
+    """Size of the quads, where they go, and the button."""
+
+    bl_label = "Hybrid Quad"
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        return True  # with no mesh object, it says so
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if not super().poll(context):
+            layout.label(text="Select a mesh object", icon="INFO")
+            return
+        if not _has_native_module():
+            layout.label(text="The compiled part is missing:", icon="ERROR")
+            layout.label(text="install a release of the add-on")
+        settings = context.object.hybrid_quad
+        column = layout.column()
+        column.prop(settings, "target_mode")
+        column.prop(settings, "quads" if settings.target_mode == "COUNT" else "edge_length")
+        layout.prop(settings, "result_mode")
+        run = OBJECT_OT_hybrid_quad_remesh.current_run
+        if run is None:
+            button = layout.row()
+            button.scale_y = 1.5
+            button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
+        else:
+            _draw_progress(layout, run.fraction, run.status)
+
+
+class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
+    """Which edges stay edges."""
+
+    bl_label = "Edges to Keep"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        row = layout.row(heading="Sharp by Angle", align=True)
+        row.prop(settings, "use_sharp_angle", text="")
+        angle = row.row()
+        angle.active = settings.use_sharp_angle
+        angle.prop(settings, "sharp_angle", text="")
+        column = layout.column(heading="Marked Edges")
+        column.prop(settings, "use_marked_sharp", text="Sharp")
+        column.prop(settings, "use_seams", text="Seam")
+        column.prop(settings, "use_feature_attribute", text="Attribute")
+
+
+class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
+    """What the latest run of the active object gave."""
+
+    bl_label = "Last Result"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(context.object.hybrid_quad.last_report)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        report = read_report(context.object)
+        if report is None:
+            self.layout.label(text="No report that can be read", icon="ERROR")
+            return
+        rows = self.layout.column(align=True)
+        for name, value in _rows_of(report):
+            row = rows.row()
+            row.label(text=name)
+            right = row.row()
+            right.alignment = "RIGHT"
+            right.label(text=value)
+        for warning in report.get("warnings", ()):
+            self.layout.label(text=warning, icon="ERROR")
+
+
+def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:
+    quality = report.get("scaled_jacobian", {})
+    return [
+        ("Quads", f"{report.get('quads', 0):,}"),
+        ("Irregular vertices", f"{report.get('irregular_vertices', 0):,}"),
+        ("Scaled Jacobian, mean", _number(quality.get("mean"))),
+        ("Scaled Jacobian, worst", _number(quality.get("min"))),
+        ("Largest distance", f"{_number(report.get('hausdorff_percent'))} %"),
+        ("Time", f"{sum(stage.get('seconds', 0.0) for stage in report.get('stages', ())):.1f} s"),
+    ]
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"
+
+
+def _draw_progress(layout: Any, fraction: float, text: str) -> None:
+    if hasattr(layout, "progress"):  # from Blender 4.0 on
+        layout.progress(factor=fraction, text=text)
+    else:
+        layout.label(text=text, icon="TIME")
+    layout.label(text="Esc: cancel")
+
+
+def _has_native_module() -> bool:
+    return importlib.util.find_spec(f"{__package__.rpartition('.')[0]}._native") is not None
+
+
+CLASSES = (VIEW3D_PT_hybrid_quad, VIEW3D_PT_hybrid_quad_features, VIEW3D_PT_hybrid_quad_report)

@@ -1,0 +1,163 @@
+"""batch.py from end to end: a Blender file in, another one out, exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import pytest
+
+import hybrid_quad
+from hybrid_quad.blender import command
+from scenes import add_cube, add_object, assert_sound
+
+BATCH = Path(hybrid_quad.__file__).parent / "batch.py"
+
+
+def _start(blend: Path, *arguments: str, **options) -> subprocess.Popen:
+    if bpy.app.binary_path:
+        words = [bpy.app.binary_path, "-b", "--factory-startup", str(blend), "--python-exit-code", "1", "-P", str(BATCH), "--"]
+    else:  # the package bpy has no program; this is what the program does
+        script = (
+            "import sys, runpy, bpy\n"
+            "bpy.ops.wm.open_mainfile(filepath=sys.argv[1])\n"
+            "path, sys.argv = sys.argv[2], ['blender', '--', *sys.argv[3:]]\n"
+            "runpy.run_path(path, run_name='__main__')\n"
+        )
+        words = [sys.executable, "-c", script, str(blend), str(BATCH)]
+    return subprocess.Popen(
+        [*words, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options
+    )
+
+
+def _run(blend: Path, *arguments: str) -> subprocess.CompletedProcess:
+    process = _start(blend, *arguments)
+    out, err = process.communicate(timeout=240)
+    return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+
+@pytest.fixture
+def blend(tmp_path):
+    """A file with a cube, and an object without faces."""
+    add_object("Nothing", [(0, 0, 0)], [])
+    add_cube(quads=250).data.name = "Cube mesh"
+    path = tmp_path / "in.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_a_file_in_a_file_out(blend, tmp_path):
+    out, report = tmp_path / "out.blend", tmp_path / "r.json"
+    done = _run(blend, "--object", "Cube", "--quads", "600", "--sharp-angle", "50", "--output", str(out), "--report", str(report))
+    assert done.returncode == 0, done.stderr
+    record = json.loads(report.read_text())
+    assert record["status"] == "ok" and record["options"]["quads"] == 600 and record["options"]["sharp_angle"] == 50
+    bpy.ops.wm.open_mainfile(filepath=str(out))
+    result = bpy.data.objects[record["object"]]
+    assert len(result.data.polygons) == record["quads"]
+    assert_sound(result)
+    assert bpy.data.objects["Cube"].hide_get() and len(bpy.data.objects["Cube"].data.polygons) == 216
+    assert bpy.data.objects["Cube"].hybrid_quad.quads == 600
+    assert str(record["quads"]) in done.stdout
+
+
+def test_replace_and_the_objects_own_settings(blend, tmp_path):
+    out, report = tmp_path / "out.blend", tmp_path / "r.json"
+    done = _run(blend, "--object", "Cube", "--replace", "--quiet", "--output", str(out), "--report", str(report))
+    assert done.returncode == 0, done.stderr
+    assert "hybrid_quad" not in done.stdout
+    record = json.loads(report.read_text())
+    assert record["object"] == "Cube" and record["options"]["quads"] == 250
+    bpy.ops.wm.open_mainfile(filepath=str(out))
+    assert_sound(bpy.data.objects["Cube"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "status"),
+    [
+        (["--object", "Nothing"], 1, "input_error"),
+        (["--object", "Nobody"], 2, "wrong_usage"),
+        (["--object", "Cube", "--time-limit", "0.000001"], 4, "time_limit"),
+    ],
+)
+def test_a_failure_writes_a_report_and_nothing_else(blend, tmp_path, arguments, code, status):
+    out, report = tmp_path / "out.blend", tmp_path / "r.json"
+    out.write_bytes(b"as it was")
+    done = _run(blend, *arguments, "--output", str(out), "--report", str(report))
+    assert done.returncode == code, done.stderr
+    assert out.read_bytes() == b"as it was"
+    assert json.loads(report.read_text())["status"] == status
+    assert "hybrid_quad: " in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.blend", "out.blend", "r.json"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--object", "Cube"],
+        ["--object", "Cube", "--output", "nowhere/out.blend"],
+        ["--object", "Cube", "--output", "out.obj"],
+        ["--object", "Cube", "--output", "out.blend", "--quads", "0"],
+        ["--object", "Cube", "--output", "out.blend", "--quads", "many"],
+        ["--object", "Cube", "--output", "out.blend", "--sharp-angle", "200"],
+        ["--object", "Cube", "--output", "out.blend", "--quads", "5", "--edge-length", "1"],
+    ],
+)
+def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
+    monkeypatch.chdir(tmp_path)
+    add_cube()
+    assert command.main(arguments) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_bug_is_status_3(tmp_path, monkeypatch):
+    from hybrid_quad.blender import remesh_task
+
+    def broken(*_args, **_kwargs):
+        raise RuntimeError("made for this test")
+
+    monkeypatch.setattr(remesh_task, "remesh_with_options", broken)
+    add_cube()
+    assert command.main(["--object", "Cube", "--output", str(tmp_path / "out.blend")]) == 3
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_terminating_it_leaves_nothing_half_written(blend, tmp_path):
+    out, report = tmp_path / "out.blend", tmp_path / "r.json"
+    process = _start(blend, "--object", "Cube", "--quads", "1000000", "--output", str(out), "--report", str(report))
+    first_line = ""
+    while "hybrid_quad:" not in first_line:  # the first sign of progress: the run has begun
+        first_line = process.stderr.readline()
+        assert first_line, "ended without a sign of progress"
+    process.send_signal(signal.SIGTERM)
+    started = time.monotonic()
+    process.communicate(timeout=60)
+    assert time.monotonic() - started < 10
+    assert process.returncode == 4
+    assert not out.exists()
+    assert json.loads(report.read_text())["status"] == "cancelled"
+
+
+def test_a_file_saved_in_edit_mode_is_taken(tmp_path):
+    add_cube(quads=250)
+    bpy.ops.object.mode_set(mode="EDIT")
+    out = tmp_path / "out.blend"
+    assert command.main(["--object", "Cube", "--output", str(out), "--quiet"]) == 0
+    assert out.exists()
+
+
+@pytest.mark.skipif(not hasattr(bpy.utils, "register_cli_command"), reason="from Blender 4.2 on")
+def test_blender_knows_the_command():
+    assert len(command._handles) == 1
+
+
+def test_help_is_no_failure(capsys):
+    assert command.main(["--help"]) == 0
+    assert "--object" in capsys.readouterr().out
+    assert os.path.exists(BATCH)

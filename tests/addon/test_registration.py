@@ -1,0 +1,53 @@
+"""The add-on comes and goes without a trace."""
+
+from __future__ import annotations
+
+import bpy
+
+import hybrid_quad
+from hybrid_quad.blender import command, registration
+
+
+def _traces() -> list[str]:
+    names = [name for name in dir(bpy.types) if "hybrid_quad" in name.lower()]
+    names += [name for name in dir(bpy.types.Object) if "hybrid_quad" in name]
+    draw = getattr(bpy.types.VIEW3D_MT_object.draw, "_draw_funcs", [])
+    names += [function.__name__ for function in draw if "hybrid_quad" in function.__module__]
+    names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name]
+    return names + ["command"] * len(command._handles)
+
+
+def test_disabling_leaves_nothing_behind():
+    assert _traces()
+    hybrid_quad.unregister()
+    assert _traces() == []
+
+
+def test_twenty_times_on_and_off():
+    once = sorted(_traces())
+    for _ in range(20):
+        hybrid_quad.unregister()
+        hybrid_quad.register()
+    assert sorted(_traces()) == once
+
+
+def test_enabling_twice_is_enabling_once():
+    once = sorted(_traces())
+    hybrid_quad.register()
+    assert sorted(_traces()) == once
+    hybrid_quad.unregister()
+    assert _traces() == []
+
+
+def test_every_property_has_a_tooltip():
+    for cls in registration.CLASSES:
+        for prop in cls.bl_rna.properties:
+            if prop.identifier in getattr(cls, "__annotations__", {}):
+                assert len(prop.description) > 10, f"{cls.__name__}.{prop.identifier}"
+
+
+def test_settings_belong_to_the_object():
+    first = bpy.data.objects.new("First", bpy.data.meshes.new("M"))
+    second = bpy.data.objects.new("Second", first.data)
+    first.hybrid_quad.quads = 123
+    assert second.hybrid_quad.quads == 5000
