@@ -22,6 +22,7 @@ struct RowConstraints {
   std::vector<int> term_count;
   std::vector<double> compliance;
   std::vector<Vector2> stiffness;  ///< per node: what X - I costs, without lambda
+  std::vector<Vector2> feature;    ///< per node: the feature edge whose row this has to vanish on, or zero
 
   int add(double softness) {
     compliance.push_back(softness);
@@ -66,6 +67,7 @@ void add_features(const FrameField& field, const WorkingSurface& surface, int f,
     if (chosen[row] < 0) continue;
     const Vector2 d = field.grid_vector(surface.mesh, chosen[row]);
     constraints.put(2 * f + row, constraints.add(std::max(d.squaredNorm(), 1e-12) / (weight * weight)), d);
+    constraints.feature[2 * f + row] = d;
   }
 }
 
@@ -80,6 +82,7 @@ RowConstraints gather_constraints(const WorkingSurface& surface, const FrameFiel
   constraints.terms.resize(2 * faces);
   constraints.term_count.assign(2 * faces, 0);
   constraints.stiffness.resize(2 * faces);
+  constraints.feature.assign(2 * faces, Vector2::Zero());
   constraints.compliance.reserve(mesh.halfedge_count());
   for (int f = 0; f < faces; ++f) {
     const double share = area[f] / mean + 1e-4;  // a face without area still resists
@@ -117,25 +120,64 @@ void assemble_dual(const RowConstraints& constraints, double lambda, SparseMatri
   matrix.setFromTriplets(entries.begin(), entries.end());
 }
 
-}  // namespace
-
-std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface, const FrameField& field,
-                                                   const CurlCorrectionOptions& options, const RunContext& context) {
-  const RowConstraints constraints = gather_constraints(surface, field, options);
-  std::vector<std::array<double, 4>> x(surface.mesh.face_count(), {1, 0, 0, 1});
-  if (constraints.compliance.empty()) return x;
+/// The correction for given stiffnesses, with feature edges put on their isolines exactly.
+void solve_rows(const RowConstraints& constraints, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) {
   context.checkpoint(0.1);
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
-  assemble_dual(constraints, options.curl_weight, matrix, right_side);
+  assemble_dual(constraints, lambda, matrix, right_side);
   const Eigen::VectorXd multiplier = solve_sparse(matrix, right_side, context);
   for (std::size_t node = 0; node < constraints.terms.size(); ++node) {
     Vector2 push = Vector2::Zero();
     for (int a = 0; a < constraints.term_count[node]; ++a)
       push += multiplier[constraints.terms[node][a].constraint] * constraints.terms[node][a].coefficients;
-    push = push.cwiseQuotient(constraints.stiffness[node]);
-    x[node / 2][2 * (node % 2)] -= push[0];
-    x[node / 2][2 * (node % 2) + 1] -= push[1];
+    const bool is_u = node % 2 == 0;
+    Vector2 row = Vector2(is_u ? 1 : 0, is_u ? 0 : 1) - push.cwiseQuotient(constraints.stiffness[node]);
+    const Vector2& feature = constraints.feature[node];
+    if (feature.squaredNorm() > 0) row -= (row.dot(feature) / feature.squaredNorm()) * feature;
+    x[node / 2][is_u ? 0 : 2] = row[0];
+    x[node / 2][is_u ? 1 : 3] = row[1];
+  }
+}
+
+/// Makes folded faces and their neighbours stiffer. \return false if too few are folded to matter
+bool raise_around_folds(const TriangleMesh& mesh, const std::vector<std::array<double, 4>>& x, double tolerated,
+                        RowConstraints& constraints) {
+  constexpr double kRaise = 10;
+  std::vector<char> marked(x.size(), 0);
+  int folded = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (is_sound_correction(x[f])) continue;
+    ++folded;
+    marked[f] = 1;
+    for (int h = 3 * f; h < 3 * f + 3; ++h)
+      if (!mesh.is_boundary(h)) marked[mesh.opposite(h) / 3] = 1;
+  }
+  if (folded <= tolerated * mesh.face_count()) return false;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (marked[f]) {
+      constraints.stiffness[2 * f] *= kRaise;
+      constraints.stiffness[2 * f + 1] *= kRaise;
+    }
+  return true;
+}
+
+}  // namespace
+
+bool is_sound_correction(const std::array<double, 4>& x) {
+  constexpr double kLeastDeterminant = 0.2, kMostDeviation = 3;
+  const double deviation = (x[0] - 1) * (x[0] - 1) + x[1] * x[1] + x[2] * x[2] + (x[3] - 1) * (x[3] - 1);
+  return x[0] * x[3] - x[1] * x[2] > kLeastDeterminant && deviation < kMostDeviation * kMostDeviation;
+}
+
+std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface, const FrameField& field,
+                                                   const CurlCorrectionOptions& options, const RunContext& context) {
+  RowConstraints constraints = gather_constraints(surface, field, options);
+  std::vector<std::array<double, 4>> x(surface.mesh.face_count(), {1, 0, 0, 1});
+  if (constraints.compliance.empty()) return x;
+  for (int round = 0;; ++round) {
+    solve_rows(constraints, options.curl_weight, x, context);
+    if (round == options.max_raises || !raise_around_folds(surface.mesh, x, options.tolerated_folds, constraints)) break;
   }
   return x;
 }

@@ -10,7 +10,12 @@ namespace hybrid_quad {
 struct CurlCorrectionOptions {
   double curl_weight = 1e-5;     ///< lambda
   double feature_weight = 30.0;
+  int max_raises = 3;              ///< solves with more lambda around folded faces, while they are more than
+  double tolerated_folds = 1e-3;   ///< this share of all faces
 };
+
+/// \return true if x keeps a frame a frame: not folded (det > 0.2), not stretched beyond use
+bool is_sound_correction(const std::array<double, 4>& x);
 
 /// How to change every frame, (du, dv) -> X (du, dv) with X = {X00, X01, X10, X11}, so that the edge of two faces
 /// measures the same in both: the minimum over X of

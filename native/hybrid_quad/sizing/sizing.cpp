@@ -18,24 +18,37 @@ void scale_to_target(const WorkingSurface& surface, const std::vector<double>& l
   }
 }
 
-/// Puts X (du, dv) in place of (du, dv) where that is a frame, and counts where it is not.
+double deviation_from_identity(const std::array<double, 4>& m) {
+  return (m[0] - 1) * (m[0] - 1) + m[1] * m[1] + m[2] * m[2] + (m[3] - 1) * (m[3] - 1);
+}
+
+/// As much of an unsound correction as leaves it sound.
+std::array<double, 4> moderated(const std::array<double, 4>& m) {
+  constexpr int kHalvings = 4;
+  double share = 1;
+  for (int step = 0; step < kHalvings; ++step) {
+    share /= 2;
+    const std::array<double, 4> part{1 + share * (m[0] - 1), share * m[1], share * m[2], 1 + share * (m[3] - 1)};
+    if (is_sound_correction(part)) return part;
+  }
+  return {1, 0, 0, 1};
+}
+
+/// Puts X (du, dv) in place of (du, dv), moderated and counted where that is no frame.
 void apply_correction(const TriangleMesh& mesh, const std::vector<std::array<double, 4>>& x, SizedFrames& sized) {
-  constexpr double kLeastDeterminant = 0.2, kMostStretch = 4;
   double deviation = 0, total = 0;
   for (int f = 0; f < mesh.face_count(); ++f) {
-    const auto& m = x[f];
-    const double determinant = m[0] * m[3] - m[1] * m[2];
-    const double norm = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3]);
-    if (!(determinant > kLeastDeterminant) || !(norm < kMostStretch)) {
+    std::array<double, 4> m = x[f];
+    if (!is_sound_correction(m)) {
       ++sized.flipped_faces;
-      continue;
+      m = moderated(m);
     }
     const Vector3 du = sized.field.du[f], dv = sized.field.dv[f];
     sized.field.du[f] = m[0] * du + m[1] * dv;
     sized.field.dv[f] = m[2] * du + m[3] * dv;
     const double area = mesh.area(f);
     total += area;
-    deviation += area * ((m[0] - 1) * (m[0] - 1) + m[1] * m[1] + m[2] * m[2] + (m[3] - 1) * (m[3] - 1));
+    deviation += area * deviation_from_identity(m);
   }
   sized.mean_correction = total > 0 ? std::sqrt(deviation / total) : 0;
 }
@@ -67,7 +80,10 @@ SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_f
     length_factor = conformal_length_factor(surface, unit_frames, options.conformal_clip, context);
   scale_to_target(surface, length_factor, sized.field);
   if (options.correct_curl) {
-    const auto x = curl_correction(surface, sized.field, {options.curl_weight, options.feature_weight}, context);
+    CurlCorrectionOptions correction;
+    correction.curl_weight = options.curl_weight;
+    correction.feature_weight = options.feature_weight;
+    const auto x = curl_correction(surface, sized.field, correction, context);
     apply_correction(mesh, x, sized);
   }
   const double quads = quads_asked > 0 ? quads_asked : asked_quads(surface);

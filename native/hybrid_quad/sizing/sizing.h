@@ -17,7 +17,7 @@ struct SizingOptions {
 struct SizedFrames {
   FrameField field;
   double mean_correction = 0;  ///< rms |X - I| over the area
-  int flipped_faces = 0;       ///< faces whose corrected frame had det <= 0.2 and was put back
+  int flipped_faces = 0;       ///< faces whose corrected frame was folded (det <= 0.2) and had to be moderated
 };
 
 /// Scales the unit frames to the surface's target lengths, corrects their curl, and rescales so that the area measured
