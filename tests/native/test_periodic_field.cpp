@@ -132,7 +132,7 @@ TEST(PeriodicField, BoxHasItsCornersPinnedAndItsEdgesOnIsolines) {
 
 TEST(PeriodicField, MultilevelIsAsLowAsGaussNewton) {
   const std::vector<std::pair<TriangleMesh, double>> cases = {
-      {test::icosphere(4), 0.2}, {test::torus(60, 30), 0.13}, {test::box(12), 0.17}, {test::capped_cylinder(40, 24), 0.21}};
+      {test::icosphere(3), 0.25}, {test::torus(40, 20), 0.2}, {test::box(8), 0.21}, {test::capped_cylinder(28, 14), 0.27}};
   for (const auto& [mesh, h] : cases) {
     const WorkingSurface surface = test::surface_of(mesh, h);
     const FrameField frames = test::smooth_frames(surface, h);

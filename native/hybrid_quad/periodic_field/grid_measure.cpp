@@ -2,22 +2,30 @@
 
 #include <cmath>
 
+#include "hybrid_quad/periodic_field/narrow_strips.h"
+
 namespace hybrid_quad {
 
 namespace {
 
-/// Lays one feature edge, known by the higher of its half-edges, on a grid direction.
-void align_feature_edge(const TriangleMesh& mesh, const FrameField& frames, int h, GridMeasure& measure) {
+/// The grid direction that a feature edge, known by the higher of its half-edges, is nearer to.
+void choose_axis(const TriangleMesh& mesh, const FrameField& frames, int h, GridMeasure& measure) {
   const Vector2 mean = measure.average(mesh, frames, h);
   const int axis = std::abs(mean[0]) >= std::abs(mean[1]) ? 0 : 1;
+  measure.axis[h] = static_cast<std::int8_t>(axis);
+  const int o = mesh.opposite(h);
+  if (o >= 0) measure.axis[o] = static_cast<std::int8_t>(axis ^ (frames.matching[h] & 1));
+}
+
+/// Lays a feature edge on its grid direction.
+void align_feature_edge(const TriangleMesh& mesh, const FrameField& frames, int h, GridMeasure& measure) {
+  const Vector2 mean = measure.average(mesh, frames, h);
+  const int axis = measure.axis[h];
   Vector2 laid(0, 0);
   laid[axis] = std::copysign(mean.norm(), mean[axis]);
   measure.along[h] = laid;
-  measure.axis[h] = static_cast<std::int8_t>(axis);
   const int o = mesh.opposite(h);
-  if (o < 0) return;
-  measure.along[o] = -turned(laid, frames.matching[h]);
-  measure.axis[o] = static_cast<std::int8_t>(axis ^ (frames.matching[h] & 1));
+  if (o >= 0) measure.along[o] = -turned(laid, frames.matching[h]);
 }
 
 /// The fewest quad edges that a curve may get: a closed chain of fewer than four is no boundary of quads.
@@ -50,7 +58,10 @@ GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frame
     if (!measure.along[h].allFinite()) measure.along[h].setZero();
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (surface.features.is_feature(h) && h > mesh.opposite(h)) align_feature_edge(mesh, frames, h, measure);
+    if (surface.features.is_feature(h) && h > mesh.opposite(h)) choose_axis(mesh, frames, h, measure);
+  widen_narrow_strips(mesh, frames, measure);
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (measure.axis[h] >= 0 && h > mesh.opposite(h)) align_feature_edge(mesh, frames, h, measure);
   stretch_short_curves(mesh, surface.features, measure);
   return measure;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStiffer = 4;
 constexpr double kStiffest = 1e4;
-constexpr double kResidual = 1e-5;
+constexpr double kResidual = 1e-4;
 constexpr int kMostSteps = 40;
 /// A face below this share of the frame's own area counts as folded.
 constexpr double kThinShare = 0.03;
