@@ -12,6 +12,7 @@ constexpr double kSurfaceError = 0.08;   ///< over h: how far an operation may t
 constexpr double kCurveError = 0.02;     ///< over h: the same for feature curves
 constexpr double kThin = 0.01;           ///< over h: the normal of a face of less height says nothing
 constexpr double kNormalCosine = 0.7;    ///< a face may turn by 45 degrees when a vertex goes
+constexpr double kSameCosine = 0.97;    ///< normals that agree so well cannot hide that a surface leaves the input
 constexpr double kPoorShape = 0.25;      ///< shape below which a collapse may not make a triangle worse
 
 /// 1 for an equilateral triangle, 0 for one without area.
@@ -105,7 +106,7 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
   const double too_long = 4.0 / 3 * options_.edge_fraction * target;
   const bool on_curve = vertex_[a].on_feature;
   const Vector3 fan = fan_normal(a);
-  bool keeps = true;
+  bool keeps = true, turns = false;
   double nearest2 = std::numeric_limits<double>::infinity(), worst_before = 1;
   mesh_.visit_outgoing(a, [&](int k) {
     worst_before = std::min(worst_before, shape(p, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k))));
@@ -119,12 +120,21 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const bool thin = !(size_before > kThin * target * std::sqrt(longest_side2(p, x, y)));
     const Vector3& reference = thin ? fan : before;
     const double new_shape = shape(q, x, y);
+    turns |= after.dot(reference) < kSameCosine * size_after * reference.norm();
     keeps = size_after > 0 && after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
             (new_shape >= kPoorShape || new_shape > worst_before) &&
             ((x - q).norm() <= too_long || (x - q).norm() <= (x - p).norm() || on_curve);
     nearest2 = std::min(nearest2, (nearest_on_triangle(p, q, x, y) - p).squaredNorm());
   });
   if (!keeps) return false;
+  if (turns && !on_curve) {
+    mesh_.visit_outgoing(a, [&](int k) {
+      if (!keeps || k / 3 == dying || k / 3 == other_dying) return;
+      const Vector3 middle = (q + mesh_.position(mesh_.to(k)) + mesh_.position(mesh_.apex(k))) / 3;
+      keeps = walked_distance2(a, middle) <= std::pow(kSurfaceError * target, 2);
+    });
+    if (!keeps) return false;
+  }
   error = vertex_[a].error + (std::isfinite(nearest2) ? std::sqrt(nearest2) : 0);
   return error <= kSurfaceError * target;
 }
@@ -170,7 +180,19 @@ bool SurfaceRemesher::flip_keeps_shape(int h) const {
   // The diagonals pass each other at this distance.
   const Vector3 across = (b - a).cross(d - c);
   const double gap = std::abs((c - a).dot(across)), limit = 0.05 * target;
-  return gap <= limit * across.norm();
+  if (gap > limit * across.norm()) return false;
+  if (m1.dot(m2) > kSameCosine * m1.norm() * m2.norm()) return true;
+  // Many small changes add up: the new diagonal must lie as near to the input as an edge may, or as the old one.
+  const int v = vertex_[mesh_.from(h)].on_feature ? mesh_.to(h) : mesh_.from(h);
+  const double strays2 = walked_distance2(v, 0.5 * (c + d));
+  return strays2 <= std::pow(kSurfaceError * target, 2) || strays2 <= walked_distance2(v, 0.5 * (a + b));
+}
+
+/// Squared distance from p to the input about v's face there, found by walking: never too small.
+double SurfaceRemesher::walked_distance2(int v, const Vector3& p) const {
+  const int region = mesh_.region(mesh_.outgoing(v) / 3), hint = vertex_[v].hint;
+  if (hint < 0 || input_region_[hint] != region) return 0;
+  return index_.walk(p, hint).squared_distance;
 }
 
 SurfacePoint SurfaceRemesher::project(int v, const Vector3& p) const {
@@ -189,6 +211,21 @@ SurfacePoint SurfaceRemesher::project(int v, const Vector3& p) const {
       return walked;
   }
   return index_.nearest(p, filter);
+}
+
+bool SurfaceRemesher::move_keeps_surface(int v, const SurfacePoint& q) const {
+  const Vector3 n = index_.mesh().normal(q.face);
+  const Vector3& old = mesh_.position(v);
+  const double limit = kSurfaceError * vertex_[v].target;
+  bool keeps = true;
+  mesh_.visit_outgoing(v, [&](int k) {
+    const Vector3 &x = mesh_.position(mesh_.to(k)), &y = mesh_.position(mesh_.apex(k));
+    const Vector3 after = (x - q.position).cross(y - q.position);
+    if (!keeps || after.dot(n) > kSameCosine * after.norm()) return;
+    const double strays2 = index_.walk((q.position + x + y) / 3, q.face).squared_distance;
+    if (strays2 > limit * limit) keeps = strays2 <= index_.walk((old + x + y) / 3, q.face).squared_distance;
+  });
+  return keeps;
 }
 
 bool SurfaceRemesher::move_keeps_shape(int v, const Vector3& p) const {
@@ -225,7 +262,9 @@ void SurfaceRemesher::relax_vertex(int v) {
   for (const double part : {1.0, 0.5, 0.25}) {
     const SurfacePoint q = project(v, p + part * step);
     if (q.face < 0) return;
-    if (q.squared_distance > std::pow(0.3 * vertex_[v].target, 2) || !move_keeps_shape(v, q.position)) continue;
+    if (q.squared_distance > std::pow(0.3 * vertex_[v].target, 2) || !move_keeps_shape(v, q.position) ||
+        !move_keeps_surface(v, q))
+      continue;
     mesh_.set_position(v, q.position);
     vertex_[v].hint = q.face;
     vertex_[v].input = -1;

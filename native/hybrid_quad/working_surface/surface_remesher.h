@@ -57,6 +57,8 @@ class SurfaceRemesher {
   bool flip_keeps_shape(int h) const;
   void relax_vertex(int v);
   bool move_keeps_shape(int v, const Vector3& p) const;
+  bool move_keeps_surface(int v, const SurfacePoint& q) const;
+  double walked_distance2(int v, const Vector3& p) const;
   SurfacePoint project(int v, const Vector3& p) const;
   Vector3 fan_normal(int v) const;
 
