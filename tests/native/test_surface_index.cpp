@@ -34,7 +34,9 @@ TEST(SurfaceIndex, FindsWhatBruteForceFinds) {
     ASSERT_GE(q.face, 0);
     EXPECT_NEAR(q.squared_distance, brute_force(m, p, filter.region, regions), 1e-12);
     EXPECT_NEAR((q.position - p).squaredNorm(), q.squared_distance, 1e-12);
-    if (filter.region >= 0) EXPECT_EQ(regions[q.face], filter.region);
+    if (filter.region >= 0) {
+      EXPECT_EQ(regions[q.face], filter.region);
+    }
   }
 }
 

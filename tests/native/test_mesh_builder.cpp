@@ -1,0 +1,262 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+
+#include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/degenerate_faces.h"
+#include "hybrid_quad/mesh/editable_mesh.h"
+#include "hybrid_quad/mesh/mesh_builder.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+bool has_defect(const std::vector<Defect>& defects, const std::string& code) {
+  return std::any_of(defects.begin(), defects.end(), [&](const Defect& d) { return d.code == code; });
+}
+
+std::string refusal(const PolygonSoup& soup) {
+  try {
+    build_mesh(soup);
+  } catch (const InputError& e) {
+    EXPECT_TRUE(has_defect(check_mesh(soup), e.code));
+    return e.code;
+  }
+  return "";
+}
+
+double signed_volume(const TriangleMesh& m) {
+  double v = 0;
+  for (const auto& f : m.faces()) v += m.position(f[0]).dot(m.position(f[1]).cross(m.position(f[2]))) / 6;
+  return v;
+}
+
+int boundary_edges(const TriangleMesh& m) {
+  return static_cast<int>(std::count(m.opposites().begin(), m.opposites().end(), -1));
+}
+
+void flip_face(PolygonSoup& soup, int f) { std::swap(soup.face_vertices[3 * f + 1], soup.face_vertices[3 * f + 2]); }
+
+PolygonSoup loose(const PolygonSoup& soup) {
+  PolygonSoup s;
+  for (const int v : soup.face_vertices) {
+    s.face_vertices.push_back(static_cast<int>(s.positions.size()));
+    s.positions.push_back(soup.positions[v]);
+  }
+  s.face_sizes = soup.face_sizes;
+  return s;
+}
+
+void add_face(PolygonSoup& soup, std::vector<int> corners) {
+  soup.face_sizes.push_back(static_cast<int>(corners.size()));
+  soup.face_vertices.insert(soup.face_vertices.end(), corners.begin(), corners.end());
+}
+
+TEST(MeshBuilder, LeavesACleanMeshAlone) {
+  const TriangleMesh torus = test::torus(12, 8);
+  for (const double scale : {1.0, 1e-30, 1e20}) {
+    PolygonSoup soup = test::soup_of(torus);
+    for (Vector3& p : soup.positions) p *= scale;
+    const BuiltMesh built = build_mesh(soup);
+    EXPECT_TRUE(built.defects.empty());
+    EXPECT_EQ(built.mesh.faces(), torus.faces());
+    EXPECT_EQ(built.mesh.positions(), soup.positions);
+  }
+}
+
+TEST(MeshBuilder, TriangulatesConcavePolygons) {
+  PolygonSoup soup;
+  soup.positions = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 1, 0}, {0, 4, 0}};
+  add_face(soup, {0, 1, 2, 3, 4});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_EQ(built.mesh.face_count(), 3);
+  EXPECT_NEAR(built.mesh.total_area(), 10, 1e-12);
+  for (int f = 0; f < 3; ++f) {
+    EXPECT_GT(built.mesh.area_normal(f).z(), 0);
+    EXPECT_EQ(built.input_face[f], 0);
+  }
+}
+
+TEST(MeshBuilder, OrientsMixedFacesOutwards) {
+  const TriangleMesh sphere = test::icosphere(2);
+  PolygonSoup soup = test::soup_of(sphere);
+  for (int f = 0; f < sphere.face_count(); ++f)
+    if (f % 3) flip_face(soup, f);
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "flipped_face"));
+  EXPECT_EQ(built.mesh.euler_characteristic(), 2);
+  EXPECT_GT(signed_volume(built.mesh), 0);
+}
+
+TEST(MeshBuilder, KeepsAConsistentInwardOrientation) {
+  PolygonSoup soup = test::soup_of(test::icosphere(1));
+  for (int f = 0; f < static_cast<int>(soup.face_sizes.size()); ++f) flip_face(soup, f);
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(built.defects.empty());
+  EXPECT_LT(signed_volume(built.mesh), 0);
+}
+
+TEST(MeshBuilder, WeldsLooseTriangles) {
+  const TriangleMesh torus = test::torus(16, 8);
+  PolygonSoup soup = loose(test::soup_of(torus));
+  EXPECT_EQ(build_mesh(soup).mesh.euler_characteristic(), 0);
+  EXPECT_EQ(build_mesh(soup).mesh.vertex_count(), torus.vertex_count());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter(-1e-6, 1e-6);
+  for (Vector3& p : soup.positions) p += Vector3(jitter(random), jitter(random), jitter(random));
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "nearly_welded_vertex"));
+  EXPECT_EQ(built.mesh.vertex_count(), torus.vertex_count());
+  EXPECT_EQ(boundary_edges(built.mesh), 0);
+}
+
+TEST(MeshBuilder, KeepsClosedBodiesApartThatLieOnEachOther) {
+  PolygonSoup soup = test::soup_of(test::box(2));
+  const PolygonSoup copy = soup;
+  const int n = static_cast<int>(copy.positions.size());
+  soup.positions.insert(soup.positions.end(), copy.positions.begin(), copy.positions.end());
+  for (std::size_t f = 0; f < copy.face_sizes.size(); ++f)
+    add_face(soup, {n + copy.face_vertices[3 * f], n + copy.face_vertices[3 * f + 2], n + copy.face_vertices[3 * f + 1]});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_EQ(built.mesh.euler_characteristic(), 4);
+  EXPECT_EQ(boundary_edges(built.mesh), 0);
+}
+
+TEST(MeshBuilder, DropsCopiesAndRepeatedCorners) {
+  const TriangleMesh sphere = test::icosphere(1);
+  PolygonSoup soup = test::soup_of(sphere);
+  const auto f = sphere.face(5), g = sphere.face(9);
+  add_face(soup, {f[1], f[2], f[0]});
+  add_face(soup, {g[0], g[2], g[1]});
+  add_face(soup, {3, 3, 4});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "duplicate_face"));
+  EXPECT_TRUE(has_defect(built.defects, "repeated_index_face"));
+  EXPECT_EQ(built.mesh.faces(), sphere.faces());
+}
+
+TEST(MeshBuilder, SplitsNonManifoldEdgesAndVertices) {
+  const TriangleMesh sphere = test::icosphere(1);
+  PolygonSoup fin = test::soup_of(sphere);
+  fin.positions.push_back(1.5 * (sphere.position(sphere.from(0)) + sphere.position(sphere.to(0))));
+  add_face(fin, {sphere.from(0), sphere.to(0), sphere.vertex_count()});
+  const BuiltMesh built = build_mesh(fin);
+  EXPECT_TRUE(has_defect(built.defects, "non_manifold_edge"));
+  EXPECT_EQ(built.mesh.euler_characteristic(), 3);  // the sphere and the fin, apart
+  EXPECT_EQ(boundary_edges(built.mesh), 3);
+
+  PolygonSoup bow;
+  bow.positions = {{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {-1, 1, 0}, {-1, -1, 0}};
+  add_face(bow, {0, 2, 1});
+  add_face(bow, {0, 3, 4});
+  const BuiltMesh split = build_mesh(bow);
+  EXPECT_TRUE(has_defect(split.defects, "non_manifold_vertex"));
+  EXPECT_EQ(split.mesh.vertex_count(), 6);
+  EXPECT_EQ(split.input_vertex, (std::vector<int>{0, 0, 1, 2, 3, 4}));
+}
+
+TEST(MeshBuilder, ResolvesFacesWithoutAreaWithoutOpeningHoles) {
+  // A vertex in the middle of an edge, closed by a collinear triangle.
+  const TriangleMesh sphere = test::icosphere(1);
+  PolygonSoup soup = test::soup_of(sphere);
+  const int a = sphere.from(0), b = sphere.to(0), c = sphere.to(1), m = sphere.vertex_count();
+  soup.positions.push_back(0.5 * (sphere.position(a) + sphere.position(b)));
+  soup.face_vertices[0] = a, soup.face_vertices[1] = m, soup.face_vertices[2] = c;
+  add_face(soup, {m, b, c});
+  add_face(soup, {a, b, m});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "zero_area_face"));
+  EXPECT_EQ(boundary_edges(built.mesh), 0);
+  EXPECT_EQ(built.mesh.euler_characteristic(), 2);
+  for (const auto& f : built.mesh.faces())
+    EXPECT_FALSE(has_no_area(built.mesh.position(f[0]), built.mesh.position(f[1]), built.mesh.position(f[2])));
+}
+
+TEST(MeshBuilder, RefusesWhatIsNoSurface) {
+  const PolygonSoup good = test::soup_of(test::icosphere(2));
+  EXPECT_EQ(refusal(PolygonSoup{}), "empty_mesh");
+  PolygonSoup bad = good;
+  bad.positions[3].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal(bad), "non_finite_vertex");
+  bad.positions[3].y() = 1e30;
+  EXPECT_EQ(refusal(bad), "coordinate_outlier");
+  bad = good;
+  bad.face_vertices[7] = 100000;
+  EXPECT_EQ(refusal(bad), "index_out_of_range");
+  bad.face_vertices[7] = -1;
+  EXPECT_EQ(refusal(bad), "index_out_of_range");
+  bad = good;
+  for (Vector3& p : bad.positions) p = Vector3(1, 2, 3);
+  EXPECT_EQ(refusal(bad), "no_area");
+  bad = good;
+  for (Vector3& p : bad.positions) p = Vector3(p.x(), 0, 0);
+  EXPECT_EQ(refusal(bad), "no_area");
+  bad = good;
+  bad.face_sizes[0] = 4;
+  EXPECT_EQ(refusal(bad), "malformed_faces");
+}
+
+TEST(MeshBuilder, RefusesAMoebiusStrip) {
+  PolygonSoup strip;
+  const int n = 12;
+  for (int i = 0; i < n; ++i) {
+    const double t = 2 * 3.14159265358979 * i / n;
+    for (const double w : {-0.3, 0.3})
+      strip.positions.emplace_back((1 + w * std::cos(t / 2)) * std::cos(t), (1 + w * std::cos(t / 2)) * std::sin(t),
+                                   w * std::sin(t / 2));
+  }
+  for (int i = 0; i + 1 < n; ++i) add_face(strip, {2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
+  add_face(strip, {2 * n - 2, 1, 0, 2 * n - 1});
+  EXPECT_EQ(refusal(strip), "non_orientable");
+}
+
+TEST(MeshBuilder, EveryBadModelIsBuiltOrRefused) {
+  const std::string folder = test::models_folder();
+  const auto bad = std::filesystem::path(folder).parent_path() / "bad";
+  if (folder.empty() || !std::filesystem::is_directory(bad)) GTEST_SKIP();
+  for (const auto& entry : std::filesystem::directory_iterator(bad)) {
+    if (entry.path().extension() != ".obj") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    try {
+      const BuiltMesh built = build_mesh(test::read_obj(entry.path().string()));
+      EXPECT_GT(built.mesh.total_area(), 0);
+      EXPECT_EQ(static_cast<int>(built.input_vertex.size()), built.mesh.vertex_count());
+      EXPECT_EQ(static_cast<int>(built.input_face.size()), built.mesh.face_count());
+    } catch (const InputError& e) {
+      EXPECT_FALSE(e.code.empty());
+    }
+  }
+}
+
+TEST(EditableMesh, RandomOperationsKeepTheTopology) {
+  for (const TriangleMesh& start : {test::torus(12, 8), test::open_cylinder(12, 5), test::icosphere(2)}) {
+    EditableMesh m(start);
+    std::mt19937 random(11);
+    for (int i = 0; i < 3000; ++i) {
+      const int h = static_cast<int>(random() % static_cast<unsigned>(m.halfedge_slots()));
+      if (!m.is_face(h / 3)) continue;
+      const unsigned what = random() % 5;
+      if (what == 0) m.split_edge(h, m.position(m.from(h)) + 0.5 * m.edge_vector(h));
+      else if (what < 3 && m.can_flip(h)) m.flip_edge(h);
+      else if (what >= 3 && m.can_collapse(h) && (!m.is_boundary_vertex(m.from(h)) || m.opposite(h) < 0)) m.collapse(h);
+    }
+    const TriangleMesh end = m.compacted().mesh;  // throws if a vertex has several fans
+    EXPECT_EQ(end.euler_characteristic(), start.euler_characteristic());
+    for (int h = 0; h < end.halfedge_count(); ++h) {
+      const int o = end.opposite(h);
+      if (o < 0) continue;
+      EXPECT_EQ(end.opposite(o), h);
+      EXPECT_EQ(end.from(o), end.to(h));
+      EXPECT_EQ(end.to(o), end.from(h));
+    }
+    const TriangleMesh again(end.positions(), end.faces());  // no edge is doubled
+    EXPECT_EQ(again.opposites(), end.opposites());
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_quad
