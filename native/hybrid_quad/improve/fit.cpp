@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <thread>
+
+#include "hybrid_quad/base/parallel.h"
 
 namespace hybrid_quad {
 
@@ -55,27 +56,12 @@ QuadOffset offset_of(const Workpiece& piece, const QuadFrame& frame, int q) {
 std::vector<QuadOffset> all_offsets(const Workpiece& piece, const Smoother& smoother, const RunContext& context) {
   constexpr int kChunk = 256;
   const int count = piece.mesh.quad_count(), chunks = (count + kChunk - 1) / kChunk;
-  const int threads = std::max(1, std::min(context.threads, chunks));
   std::vector<QuadOffset> offsets(count);
-  const auto work = [&](int first) {
-    for (int c = first; c < chunks; c += threads) {
-      if (first == 0) context.checkpoint(static_cast<double>(c) / chunks);
-      for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q)
-        if (piece.mesh.alive(q)) offsets[q] = offset_of(piece, smoother.frame(q), q);
-    }
-  };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < threads; ++t) pool.emplace_back(work, t);
-  const auto join = [&] {
-    for (std::thread& t : pool) t.join();
-  };
-  try {
-    work(0);
-  } catch (...) {
-    join();
-    throw;
-  }
-  join();
+  context.checkpoint();
+  parallel_for(chunks, context.threads, [&](int c) {
+    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q)
+      if (piece.mesh.alive(q)) offsets[q] = offset_of(piece, smoother.frame(q), q);
+  });
   return offsets;
 }
 

@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/untangle.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/wedge_template.h"
 #include "hybrid_quad/improve/workpiece.h"
@@ -18,6 +19,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return report;
   piece.bind_all();
+  report.inverted_before = static_cast<int>(tangled_quads(piece).size());
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
@@ -30,6 +32,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   }
   smoother.smooth(options.smoothing_sweeps, context);
   if (options.fit) fit_to_input(piece, smoother, context);
+  report.inverted_after = untangle(piece, smoother, context);
   quads = piece.mesh.extract();
   return report;
 }

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <thread>
 #include <tuple>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/mesh/segment_index.h"
 
 namespace hybrid_quad {
@@ -108,35 +108,20 @@ struct Tally {
   double sum = 0, largest = 0;
 };
 
-/// Sum and maximum of distance(i) for i in [0, count), in chunks of a fixed size that threads take in turn: neither
-/// depends on how many threads there are.
+/// Sum and maximum of distance(i) for i in [0, count), in chunks of a fixed size, so that neither depends on how
+/// many threads there are.
 Tally tally(int count, const RunContext& context, const std::function<double(int)>& distance) {
   constexpr int kChunk = 1024;
   const int chunks = (count + kChunk - 1) / kChunk;
-  const int threads = std::max(1, std::min(context.threads, chunks));
   std::vector<Tally> parts(chunks);
-  const auto work = [&](int first) {
-    for (int c = first; c < chunks; c += threads) {
-      if (first == 0) context.checkpoint();
-      for (int i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) {
-        const double d = distance(i);
-        parts[c].sum += d;
-        parts[c].largest = std::max(parts[c].largest, d);
-      }
+  context.checkpoint();
+  parallel_for(chunks, context.threads, [&](int c) {
+    for (int i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) {
+      const double d = distance(i);
+      parts[c].sum += d;
+      parts[c].largest = std::max(parts[c].largest, d);
     }
-  };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < threads; ++t) pool.emplace_back(work, t);
-  const auto join = [&] {
-    for (std::thread& t : pool) t.join();
-  };
-  try {
-    work(0);
-  } catch (...) {
-    join();
-    throw;
-  }
-  join();
+  });
   Tally all;
   for (const Tally& part : parts) {
     all.sum += part.sum;

@@ -1,0 +1,108 @@
+#include "hybrid_quad/improve/untangle.h"
+
+#include <algorithm>
+
+#include "hybrid_quad/mesh/mesh_quality.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+double own_quality(const EditMesh& mesh, int q) {
+  const auto& v = mesh.quad(q);
+  return scaled_jacobian(mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]);
+}
+
+std::vector<int> sorted_unique(std::vector<int> list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+std::vector<int> vertices_of(const EditMesh& mesh, const std::vector<int>& quads) {
+  std::vector<int> vertices;
+  for (const int q : quads) vertices.insert(vertices.end(), mesh.quad(q).begin(), mesh.quad(q).end());
+  return sorted_unique(std::move(vertices));
+}
+
+std::vector<int> quads_around(const EditMesh& mesh, const std::vector<int>& vertices) {
+  std::vector<int> quads;
+  for (const int v : vertices) quads.insert(quads.end(), mesh.quads_at(v).begin(), mesh.quads_at(v).end());
+  return sorted_unique(std::move(quads));
+}
+
+/// Sum over quads of how far each is below a fair quality, by its own normal and by the input's.
+double badness(const Workpiece& piece, const Smoother& smoother, const std::vector<int>& quads) {
+  constexpr double kFair = 0.3;
+  double sum = 0;
+  for (const int q : quads)
+    sum += std::max(0.0, kFair - std::min(own_quality(piece.mesh, q), smoother.signed_quality(q)));
+  return sum;
+}
+
+/// Relaxes `rings` rings around q, if that makes them less bad.
+void untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
+  constexpr double kRegularisation[] = {0.5, 0.2, 0.07, 0.02, 1e-3};
+  constexpr int kSweeps = 4;
+  std::vector<int> inside = vertices_of(piece.mesh, {q});
+  for (int ring = 0; ring < rings; ++ring) inside = vertices_of(piece.mesh, quads_around(piece.mesh, inside));
+  const std::vector<int> quads = quads_around(piece.mesh, inside);
+  smoother.update_frames(quads, true);
+  const double before = badness(piece, smoother, quads);
+  std::vector<Vector3> positions;
+  std::vector<int> faces;
+  std::vector<double> arcs;
+  for (const int v : inside) {
+    positions.push_back(piece.mesh.positions[v]);
+    faces.push_back(piece.face[v]);
+    arcs.push_back(piece.arc[v]);
+  }
+  for (const int v : inside)
+    if (piece.mesh.is_free(v) && piece.face[v] >= 0) {
+      const SurfacePoint point = piece.walk(piece.mesh.positions[v], piece.face[v]);
+      piece.mesh.positions[v] = point.position;
+      piece.face[v] = point.face;
+    }
+  for (const double eps : kRegularisation) smoother.relax(inside, kSweeps, eps);
+  smoother.update_frames(quads, true);
+  if (badness(piece, smoother, quads) < before) return;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    piece.mesh.positions[inside[i]] = positions[i];
+    piece.face[inside[i]] = faces[i];
+    piece.arc[inside[i]] = arcs[i];
+  }
+  smoother.update_frames(quads, true);
+}
+
+}  // namespace
+
+std::vector<int> tangled_quads(const Workpiece& piece) {
+  QuadMesh mesh;
+  mesh.positions = piece.mesh.positions;
+  std::vector<int> id;
+  for (int q = 0; q < piece.mesh.quad_count(); ++q) {
+    if (!piece.mesh.alive(q)) continue;
+    mesh.quads.push_back(piece.mesh.quad(q));
+    id.push_back(q);
+  }
+  std::vector<int> tangled;
+  for (const int q : inverted_quads(mesh, piece.index)) tangled.push_back(id[q]);
+  for (const int q : id)
+    if (own_quality(piece.mesh, q) <= 0) tangled.push_back(q);
+  return sorted_unique(std::move(tangled));
+}
+
+int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr int kRounds = 4;
+  std::vector<int> tangled = tangled_quads(piece);
+  for (int round = 0; round < kRounds && !tangled.empty(); ++round) {
+    for (const int q : tangled) {
+      context.checkpoint(static_cast<double>(round) / kRounds);
+      untangle_place(piece, smoother, q, 1 + round);
+    }
+    tangled = tangled_quads(piece);
+  }
+  return static_cast<int>(tangled.size());
+}
+
+}  // namespace hybrid_quad

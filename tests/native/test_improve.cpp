@@ -1,0 +1,469 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/improve/surface_walk.h"
+#include "hybrid_quad/improve/valence_moves.h"
+#include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/mesh/segment_index.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+/// An input with everything that improve_quads needs to know of it.
+struct Surface {
+  explicit Surface(TriangleMesh m, double sharp_angle = 40) : mesh(std::move(m)) {
+    FeatureOptions options;
+    options.sharp_angle = sharp_angle;
+    features = detect_features(mesh, options, RunContext{});
+    index = std::make_unique<SurfaceIndex>(mesh, features.face_region);
+  }
+  TriangleMesh mesh;
+  FeatureGraph features;
+  std::unique_ptr<SurfaceIndex> index;
+};
+
+/// n x m quads over [0, width] x [0, height], z = 0.
+QuadMesh sheet(int n, int m, double width = 1, double height = 1) {
+  QuadMesh mesh;
+  for (int j = 0; j <= m; ++j)
+    for (int i = 0; i <= n; ++i) mesh.positions.emplace_back(width * i / n, height * j / m, 0);
+  const auto id = [n](int i, int j) { return j * (n + 1) + i; };
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < n; ++i) mesh.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+  return mesh;
+}
+
+/// n x n quads on every side of the unit cube.
+QuadMesh cube(int n) {
+  QuadMesh mesh;
+  std::map<std::array<int, 3>, int> ids;
+  const auto id = [&](const std::array<int, 3>& at) {
+    const auto [place, is_new] = ids.try_emplace(at, static_cast<int>(mesh.positions.size()));
+    if (is_new) mesh.positions.emplace_back(at[0] / double(n), at[1] / double(n), at[2] / double(n));
+    return place->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int a, int b) {
+            std::array<int, 3> at{};
+            at[axis] = side;
+            at[(axis + 1) % 3] = a;
+            at[(axis + 2) % 3] = b;
+            return id(at);
+          };
+          std::array<int, 4> q = {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
+          if (side == 0) std::swap(q[1], q[3]);
+          mesh.quads.push_back(q);
+        }
+  return mesh;
+}
+
+QuadMesh sphere(int n) {
+  QuadMesh mesh = cube(n);
+  for (Vector3& p : mesh.positions) p = (p - Vector3(0.5, 0.5, 0.5)).normalized();
+  return mesh;
+}
+
+/// n quads around and m along the cylinder about the z axis.
+QuadMesh tube(int n, int m, double radius = 1, double height = 2) {
+  QuadMesh mesh;
+  for (int j = 0; j <= m; ++j)
+    for (int i = 0; i < n; ++i)
+      mesh.positions.emplace_back(radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), height * j / m);
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < n; ++i) mesh.quads.push_back({j * n + i, j * n + (i + 1) % n, (j + 1) * n + (i + 1) % n, (j + 1) * n + i});
+  return mesh;
+}
+
+/// Kinds, anchors and feature edges of quads whose feature vertices lie on the input's curves.
+void bind(QuadMesh& quads, const Surface& surface) {
+  const double near = 0.02 * surface.mesh.diagonal();
+  const int n = static_cast<int>(quads.positions.size());
+  std::vector<std::array<Vector3, 2>> segments;
+  std::vector<std::array<int, 2>> owner;
+  for (int c = 0; c < static_cast<int>(surface.features.curves.size()); ++c) {
+    const auto& v = surface.features.curves[c].vertices;
+    for (int i = 0; i + 1 < static_cast<int>(v.size()); ++i) {
+      segments.push_back({surface.mesh.position(v[i]), surface.mesh.position(v[i + 1])});
+      owner.push_back({c, i});
+    }
+  }
+  const SegmentIndex index(std::move(segments));
+  quads.kind.assign(n, VertexKind::kFree);
+  quads.anchor.assign(n, 0);
+  std::vector<double> place(n, 0);
+  for (int v = 0; v < n; ++v) {
+    const SegmentPoint point = index.nearest(quads.positions[v]);
+    if (point.segment >= 0 && point.squared_distance < near * near * 1e-6) {
+      quads.kind[v] = VertexKind::kCurve;
+      quads.anchor[v] = owner[point.segment][0];
+      place[v] = owner[point.segment][1] + point.fraction;
+    } else {
+      quads.anchor[v] = surface.features.face_region[surface.index->nearest(quads.positions[v]).face];
+    }
+    for (int w = 0; w < surface.mesh.vertex_count(); ++w)
+      if (surface.features.is_corner[w] && (surface.mesh.position(w) - quads.positions[v]).norm() < 1e-3 * near) {
+        quads.kind[v] = VertexKind::kCorner;
+        quads.anchor[v] = w;
+      }
+  }
+  quads.feature_edges.clear();
+  const auto is_end = [&](int v, int c) {
+    const auto& along = surface.features.curves[c].vertices;
+    return quads.kind[v] == VertexKind::kCorner && (along.front() == quads.anchor[v] || along.back() == quads.anchor[v]);
+  };
+  const auto add = [&](int a, int b, int c) {
+    const auto& along = surface.features.curves[c].vertices;
+    const double last = static_cast<double>(along.size()) - 1;
+    const auto position = [&](int v, double other) {
+      if (quads.kind[v] == VertexKind::kCurve) return place[v];
+      if (along.front() == along.back()) return other < last / 2 ? 0.0 : last;
+      return along.front() == quads.anchor[v] ? 0.0 : last;
+    };
+    double step = position(b, position(a, 0)) - position(a, position(b, 0));
+    if (surface.features.curves[c].closed && std::abs(step) > last / 2) step = -step;
+    if (step > 0) quads.feature_edges.push_back({a, b, c});
+    else quads.feature_edges.push_back({b, a, c});
+  };
+  for (const auto& q : quads.quads)
+    for (int i = 0; i < 4; ++i) {
+      const int a = q[i], b = q[(i + 1) % 4];
+      if (quads.kind[a] == VertexKind::kFree || quads.kind[b] == VertexKind::kFree) continue;
+      const SegmentPoint middle = index.nearest(0.5 * (quads.positions[a] + quads.positions[b]));
+      if (std::sqrt(middle.squared_distance) > near) continue;
+      const int c = owner[middle.segment][0];
+      const auto on = [&](int v) { return quads.kind[v] == VertexKind::kCurve ? quads.anchor[v] == c : is_end(v, c); };
+      if (!on(a) || !on(b)) continue;
+      const bool known = std::any_of(quads.feature_edges.begin(), quads.feature_edges.end(), [&](const auto& e) {
+        return (e.a == a && e.b == b) || (e.a == b && e.b == a);
+      });
+      if (!known) add(a, b, c);
+    }
+}
+
+/// Free vertices shaken by up to `amount`, curve vertices along their edges.
+void shake(QuadMesh& quads, double amount, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&] { return 2.0 * random() / 4294967295.0 - 1.0; };
+  for (std::size_t v = 0; v < quads.positions.size(); ++v) {
+    const Vector3 offset(number(), number(), number());
+    if (quads.kind[v] == VertexKind::kFree) quads.positions[v] += amount * offset;
+  }
+  for (const auto& e : quads.feature_edges)
+    if (quads.kind[e.a] == VertexKind::kCurve) quads.positions[e.a] += 0.3 * number() * (quads.positions[e.b] - quads.positions[e.a]);
+}
+
+ImproveReport improve(QuadMesh& quads, const Surface& surface, const ImproveOptions& options = {}, int threads = 1) {
+  RunContext context;
+  context.threads = threads;
+  return improve_quads(quads, surface.mesh, surface.features, *surface.index, options, context);
+}
+
+double distance_to_curve(const Surface& surface, int curve, const Vector3& p) {
+  const auto& v = surface.features.curves[curve].vertices;
+  std::vector<std::array<Vector3, 2>> segments;
+  for (std::size_t i = 0; i + 1 < v.size(); ++i) segments.push_back({surface.mesh.position(v[i]), surface.mesh.position(v[i + 1])});
+  return std::sqrt(SegmentIndex(std::move(segments)).nearest(p).squared_distance);
+}
+
+void expect_on_features(const QuadMesh& quads, const Surface& surface) {
+  const double tolerance = 1e-9 * surface.mesh.diagonal();
+  for (std::size_t v = 0; v < quads.positions.size(); ++v)
+    if (quads.kind[v] == VertexKind::kCurve) {
+      EXPECT_LE(distance_to_curve(surface, quads.anchor[v], quads.positions[v]), tolerance);
+    } else if (quads.kind[v] == VertexKind::kCorner) {
+      EXPECT_EQ(quads.positions[v], surface.mesh.position(quads.anchor[v]));
+    }
+}
+
+TEST(Improve, ShakenBoxBecomesGoodAndKeepsItsFeatures) {
+  const Surface surface(test::box(6));
+  QuadMesh quads = cube(7);
+  bind(quads, surface);
+  ASSERT_EQ(std::count(quads.kind.begin(), quads.kind.end(), VertexKind::kCorner), 8);
+  ASSERT_EQ(quads.feature_edges.size(), 84u);
+  const std::size_t edges = quads.feature_edges.size();
+  shake(quads, 0.05, 1);
+  const ShapeQuality before = shape_quality(quads);
+  improve(quads, surface);
+  const ShapeQuality after = shape_quality(quads);
+  EXPECT_GT(after.scaled_jacobian_mean, before.scaled_jacobian_mean);
+  EXPECT_GT(after.scaled_jacobian_min, 0.9);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_EQ(quads.feature_edges.size(), edges);
+  expect_on_features(quads, surface);
+  EXPECT_LT(surface_distance(quads, *surface.index, RunContext{}).hausdorff(), 0.5);
+}
+
+TEST(Improve, FeatureEdgesStayMeshEdges) {
+  const Surface surface(test::box(5));
+  QuadMesh quads = cube(6);
+  bind(quads, surface);
+  shake(quads, 0.06, 5);
+  improve(quads, surface);
+  const EditMesh mesh(quads, surface.mesh, surface.features);
+  for (const auto& e : quads.feature_edges) EXPECT_TRUE(mesh.has_edge(e.a, e.b));
+}
+
+TEST(Improve, UntanglesAFoldedGrid) {
+  const Surface surface(test::flat_grid(9, 9));
+  QuadMesh quads = sheet(10, 10);
+  bind(quads, surface);
+  const auto id = [](int i, int j) { return j * 11 + i; };
+  quads.positions[id(4, 4)] += Vector3(0.28, 0.05, 0);
+  quads.positions[id(5, 5)] -= Vector3(0.31, 0.02, 0);
+  quads.positions[id(7, 3)] += Vector3(0.0, 0.25, 0);
+  const ImproveReport report = improve(quads, surface);
+  EXPECT_GT(report.inverted_before, 0);
+  EXPECT_EQ(report.inverted_after, 0);
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.9);
+  for (std::size_t q = 0; q < quads.quads.size(); ++q) {
+    const auto& v = quads.quads[q];
+    EXPECT_GT((quads.positions[v[2]] - quads.positions[v[0]]).cross(quads.positions[v[3]] - quads.positions[v[1]]).z(), 0);
+  }
+}
+
+/// Turns random edges of a valid mesh, keeping it valid.
+void scramble(QuadMesh& quads, const Surface& surface, int turns, unsigned seed) {
+  std::mt19937 random(seed);
+  for (int t = 0; t < turns; ++t) {
+    const EditMesh mesh(quads, surface.mesh, surface.features);
+    const int q = static_cast<int>(random() % quads.quads.size()), side = static_cast<int>(random() % 4);
+    const int other = mesh.across(q, side);
+    if (other < 0) continue;
+    const auto f = quads.quads[q], g = quads.quads[other];
+    const int k = mesh.corner_of(other, f[(side + 1) % 4]);
+    const int a = f[(side + 3) % 4], b = f[side], x = g[(k + 2) % 4], y = g[(k + 3) % 4], c = f[(side + 1) % 4], d = f[(side + 2) % 4];
+    if (mesh.is_feature(b, c) || a == y || mesh.has_edge(a, y)) continue;
+    QuadMesh changed = quads;
+    changed.quads[q] = {a, b, x, y};
+    changed.quads[other] = {a, y, c, d};
+    if (violations_of(changed).empty()) quads = changed;
+  }
+}
+
+TEST(Improve, ScrambledConnectivityGetsMoreRegularAndStaysValid) {
+  const Surface ball(test::icosphere(4));
+  const Surface box(test::box(6));
+  for (const Surface* surface : {&ball, &box})
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      QuadMesh quads = surface == &ball ? sphere(8) : cube(8);
+      bind(quads, *surface);
+      scramble(quads, *surface, 25, seed);
+      ASSERT_TRUE(violations_of(quads).empty());
+      const ShapeQuality before = shape_quality(quads);
+      const std::size_t edges = quads.feature_edges.size();
+      improve(quads, *surface);
+      const ShapeQuality after = shape_quality(quads);
+      EXPECT_TRUE(violations_of(quads).empty());
+      EXPECT_LT(after.irregular_vertices, before.irregular_vertices);
+      EXPECT_GE(after.scaled_jacobian_mean, before.scaled_jacobian_mean);
+      EXPECT_GT(after.scaled_jacobian_min, 0);
+      EXPECT_EQ(quads.feature_edges.size(), edges);
+      expect_on_features(quads, *surface);
+    }
+}
+
+TEST(Improve, NoQuadStaysStraightAtAFeature) {
+  // The boundary vertex in the middle of a side gets a single quad whose corner there is straight.
+  const Surface surface(test::flat_grid(6, 6));
+  QuadMesh quads = sheet(6, 6);
+  const auto id = [](int i, int j) { return j * 7 + i; };
+  // Quads (2,0) and (3,0) over vertex (3,0): turning their common edge leaves one quad at it.
+  const int q = 2, r = 3;
+  quads.quads[q] = {id(2, 0), id(3, 0), id(4, 0), id(2, 1)};
+  quads.quads[r] = {id(2, 1), id(4, 0), id(4, 1), id(3, 1)};
+  bind(quads, surface);
+  ASSERT_TRUE(violations_of(quads).empty());
+  const auto straight = [&] {
+    const EditMesh mesh(quads, surface.mesh, surface.features);
+    int count = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) count += has_straight_corner(mesh, v);
+    return count;
+  };
+  ASSERT_GT(straight(), 0);
+  improve(quads, surface);
+  EXPECT_EQ(straight(), 0);
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.3);
+  EXPECT_TRUE(violations_of(quads).empty());
+}
+
+TEST(Improve, SameAtAnyScaleAndPlace) {
+  const TriangleMesh unit = test::box(6);
+  QuadMesh shaken = cube(7);
+  {
+    const Surface surface(unit);
+    bind(shaken, surface);
+    shake(shaken, 0.04, 3);
+  }
+  QuadMesh reference = shaken;
+  improve(reference, Surface(unit));
+  for (const double scale : {1e-6, 1e6})
+    for (const Vector3& offset : {Vector3(0, 0, 0), Vector3(300, -200, 100)}) {
+      const auto map = [&](const Vector3& p) { return Vector3(scale * (p + offset)); };
+      std::vector<Vector3> positions;
+      for (const Vector3& p : unit.positions()) positions.push_back(map(p));
+      const Surface surface(TriangleMesh(positions, unit.faces()));
+      QuadMesh quads = shaken;
+      for (Vector3& p : quads.positions) p = map(p);
+      improve(quads, surface);
+      ASSERT_EQ(quads.quads, reference.quads);
+      for (std::size_t v = 0; v < quads.positions.size(); ++v)
+        EXPECT_NEAR((quads.positions[v] - map(reference.positions[v])).norm() / scale, 0, 1e-6);
+    }
+}
+
+TEST(Improve, SameForAnyNumberOfThreads) {
+  const Surface surface(test::icosphere(4));
+  QuadMesh start = sphere(12);
+  bind(start, surface);
+  scramble(start, surface, 20, 9);
+  shake(start, 0.02, 2);
+  QuadMesh one = start;
+  improve(one, surface);
+  for (const int threads : {2, 4}) {
+    QuadMesh many = start;
+    improve(many, surface, {}, threads);
+    ASSERT_EQ(many.quads, one.quads);
+    for (std::size_t v = 0; v < one.positions.size(); ++v) EXPECT_EQ(many.positions[v], one.positions[v]);
+  }
+}
+
+TEST(Improve, FitLowersTheDistance) {
+  const Surface surface(test::icosphere(5));
+  QuadMesh quads = sphere(6);
+  bind(quads, surface);
+  QuadMesh fitted = quads;
+  ImproveOptions options;
+  options.fit = false;
+  improve(quads, surface, options);
+  improve(fitted, surface);
+  EXPECT_LT(surface_distance(fitted, *surface.index, RunContext{}).mean,
+            0.7 * surface_distance(quads, *surface.index, RunContext{}).mean);
+}
+
+TEST(Improve, ThinStripKeepsItsTwoSides) {
+  // Curves that run close to each other: one row of quads, its border vertices far out of place.
+  const Surface surface(test::flat_grid(60, 2, 1, 0.02));
+  QuadMesh quads = sheet(30, 1, 1, 0.02);
+  bind(quads, surface);
+  shake(quads, 0, 4);
+  improve(quads, surface);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.5);
+  expect_on_features(quads, surface);
+}
+
+TEST(Improve, ClosedCurves) {
+  const Surface surface(test::open_cylinder(40, 12));
+  QuadMesh quads = tube(20, 6);
+  bind(quads, surface);
+  ASSERT_EQ(quads.feature_edges.size(), 40u);
+  shake(quads, 0.05, 7);
+  improve(quads, surface);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.9);
+  expect_on_features(quads, surface);
+}
+
+TEST(Improve, NothingBadFromDegenerateInput) {
+  const Surface surface(test::box(3));
+  QuadMesh empty;
+  EXPECT_NO_THROW(improve(empty, surface));
+  QuadMesh point = cube(3);
+  bind(point, surface);
+  for (Vector3& p : point.positions) p = Vector3(0.5, 0.5, 1);
+  improve(point, surface);
+  for (const Vector3& p : point.positions) EXPECT_TRUE(p.allFinite());
+  QuadMesh spiky = cube(4);
+  bind(spiky, surface);
+  for (std::size_t v = 0; v < spiky.positions.size(); v += 3) spiky.positions[v] = 50 * Vector3(1, -1, 0.3);
+  improve(spiky, surface);
+  EXPECT_TRUE(violations_of(spiky).empty());
+  expect_on_features(spiky, surface);
+}
+
+TEST(ChainArcLengths, OrderSurvivesPointsOutOfPlace) {
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 20; ++i) points.emplace_back(i, 0, 0);
+  const CurveGeometry line(points, false);
+  std::vector<Vector3> chain = {{0, 0, 0}, {3, 1, 0}, {15, 1, 0}, {6, -1, 0}, {9, 0, 0}, {2, 0, 0}, {14, 0, 0}, {20, 0, 0}};
+  const std::vector<double> arcs = chain_arc_lengths(line, chain, true);
+  EXPECT_EQ(arcs.front(), 0);
+  EXPECT_EQ(arcs.back(), 20);
+  for (std::size_t i = 0; i + 1 < arcs.size(); ++i) EXPECT_LT(arcs[i], arcs[i + 1]);
+  EXPECT_NEAR(arcs[1], 3, 1e-12);
+  EXPECT_NEAR(arcs[6], 14, 1e-12);
+}
+
+TEST(ChainArcLengths, ClosedCurveIsCyclic) {
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 24; ++i) points.emplace_back(std::cos(2 * M_PI * i / 24), std::sin(2 * M_PI * i / 24), 0);
+  points.back() = points.front();
+  const CurveGeometry ring(points, true);
+  std::vector<Vector3> chain;
+  for (int i = 0; i < 8; ++i) chain.push_back(ring.at(ring.length() * (0.7 + i / 8.0)));
+  std::swap(chain[2], chain[3]);
+  chain[0] = ring.at(0.2 * ring.length());  // the first one, far away
+  const std::vector<double> arcs = chain_arc_lengths(ring, chain, false);
+  double around = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double step = ring.normalized(arcs[(i + 1) % 8] - arcs[i]);
+    EXPECT_GT(step, 0);
+    around += step;
+  }
+  EXPECT_NEAR(around, ring.length(), 1e-9);
+}
+
+TEST(SurfaceWalk, FindsWhatTheTreeFindsOnASphere) {
+  const Surface surface(test::icosphere(4));
+  for (int i = 0; i < 100; ++i) {
+    const Vector3 p = 1.1 * Vector3(std::sin(3.0 * i), std::cos(5.0 * i), std::sin(1.3 * i + 1)).normalized();
+    const SurfacePoint walked = walk_to_nearest(surface.mesh, surface.features.face_region, p, i);
+    EXPECT_NEAR(walked.squared_distance, surface.index->nearest(p).squared_distance, 1e-12);
+  }
+}
+
+TEST(SurfaceWalk, StaysInItsRegion) {
+  const Surface surface(test::box(4));
+  for (int f = 0; f < surface.mesh.face_count(); f += 5) {
+    const SurfacePoint walked = walk_to_nearest(surface.mesh, surface.features.face_region, Vector3(0.9, 2, 0.7), f);
+    EXPECT_EQ(surface.features.face_region[walked.face], surface.features.face_region[f]);
+  }
+}
+
+TEST(EditMesh, UndoRestoresEverything) {
+  const Surface surface(test::icosphere(2));
+  QuadMesh quads = sphere(3);
+  bind(quads, surface);
+  EditMesh mesh(quads, surface.mesh, surface.features);
+  const auto incident = [&] {
+    std::vector<std::vector<int>> lists;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      lists.push_back(mesh.quads_at(v));
+      std::sort(lists.back().begin(), lists.back().end());
+    }
+    return lists;
+  };
+  const auto before = incident();
+  const std::size_t mark = mesh.mark();
+  mesh.set_quad(0, mesh.quad(5), true);
+  mesh.set_quad(7, mesh.quad(7), false);
+  mesh.set_quad(0, {1, 2, 3, 4}, true);
+  EXPECT_NE(incident(), before);
+  mesh.undo_to(mark);
+  EXPECT_EQ(incident(), before);
+  for (int q = 0; q < mesh.quad_count(); ++q) EXPECT_EQ(mesh.quad(q), quads.quads[q]);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
