@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         say(f"{options.input}: {error}{describe_elements(error)} [{error.code}]")
         return exit_codes.CANNOT_REMESH
-    except (MeshFileError, UsageProblem) as error:
+    except (MeshFileError, UsageProblem, ImportError) as error:  # ImportError: an incomplete installation
         say(str(error))
         return exit_codes.WRONG_USAGE
     except (Cancelled, KeyboardInterrupt) as error:

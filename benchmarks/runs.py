@@ -1,0 +1,182 @@
+"""One run of the command line, limited in time and memory, measured and judged."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.validation import topology, violations
+
+ROOT = Path(__file__).resolve().parent.parent
+COLLECTION = ROOT.parent / "shared" / "meshes" / "dev"
+JUDGE = ROOT.parent / "shared" / "judge" / "judge_quads.py"
+SETTINGS = {"sharp": ("--sharp-angle", "40"), "no_sharp": ("--no-sharp",)}
+
+
+@dataclass(frozen=True)
+class Run:
+    """What to do."""
+
+    model: str
+    path: Path
+    quads: int
+    setting: str
+
+    @property
+    def name(self) -> str:
+        """Unique among the runs of a sweep; also the name of its files."""
+        return f"{self.model}_{self.quads}_{self.setting}"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a run may take before it is ended."""
+
+    seconds: float = 300.0
+    memory_mb: int = 8192
+    judge_seconds: float = 600.0
+
+
+@dataclass
+class Outcome:
+    """What came of a run.
+
+    `status` is "valid", "invalid", "timeout", "crash", or the report's status where no mesh was made; `failed` names
+    the checks that failed, of the judge and of our own validation.
+    """
+
+    model: str
+    quads: int
+    setting: str
+    status: str
+    failed: list[str] = field(default_factory=list)
+    message: str = ""
+    seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    peak_mb: float = 0.0
+    report: dict[str, Any] = field(default_factory=dict)
+    judgement: dict[str, Any] = field(default_factory=dict)
+
+    def as_json(self) -> dict[str, Any]:
+        """For a line of results."""
+        return asdict(self)
+
+
+def run_and_judge(
+    run: Run, folder: Path, limits: Limits, judge: Path | None = JUDGE, threads: int = 1, keep_meshes: bool = True
+) -> Outcome:
+    """Remeshes one model in a process of its own and judges what comes out.
+
+    Parameters
+    ----------
+    folder : Path
+        Receives the mesh and the reports.
+    judge : Path or None
+        Script of the independent judge; without one only our own validation speaks.
+    threads : int
+        Threads of the run.
+    keep_meshes : bool
+        Leave the result's mesh in the folder.
+    """
+    out, report = folder / f"{run.name}.obj", folder / f"{run.name}.report.json"
+    for old in (out, report):
+        old.unlink(missing_ok=True)
+    command = [sys.executable, "-m", "hybrid_quad", "remesh", str(run.path), str(out), "--quads", str(run.quads)]
+    command += [*SETTINGS[run.setting], "--threads", str(threads), "--report", str(report), "--quiet"]
+    measured = _measure(command, limits.seconds, limits.memory_mb)
+    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message)
+    outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
+    if report.exists():
+        outcome.report = json.loads(report.read_text())
+    if measured.status != "ok":
+        if measured.status == "failed":
+            outcome.status = outcome.report.get("status", "crash")
+        return outcome
+    outcome.failed = _own_checks(run.path, out)
+    if judge is not None and judge.exists():
+        outcome.judgement = _judge(judge, run, out, folder / f"{run.name}.judge.json", limits.judge_seconds)
+        outcome.failed += outcome.judgement.get("failed", [])
+    outcome.status = "invalid" if outcome.failed else "valid"
+    if not keep_meshes:
+        out.unlink(missing_ok=True)
+    return outcome
+
+
+@dataclass
+class _Measured:
+    status: str  # "ok", "failed", "crash" or "timeout"
+    message: str
+    seconds: float
+    cpu_seconds: float
+    peak_mb: float
+
+
+def _measure(command: list[str], seconds: float, memory_mb: int) -> _Measured:
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
+
+    begin = time.monotonic()
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", preexec_fn=limit
+    ) as process:
+        assert process.stderr is not None
+        timed_out = False
+        while True:
+            pid, wait_status, usage = os.wait4(process.pid, os.WNOHANG)
+            if pid:
+                break
+            if not timed_out and time.monotonic() - begin > seconds:
+                timed_out = True
+                process.kill()
+            time.sleep(0.01)
+        elapsed = time.monotonic() - begin
+        process.returncode = os.waitstatus_to_exitcode(wait_status)
+        message = process.stderr.read().strip()
+    if timed_out:
+        status = "timeout"
+    elif process.returncode < 0:
+        status, message = "crash", f"signal {-process.returncode} {message}"
+    else:
+        status = "failed" if process.returncode else "ok"
+    return _Measured(status, message[-500:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+
+
+def _own_checks(source: Path, result: Path) -> list[str]:
+    vertices, polygons = read_mesh(result)
+    if (polygons.sizes != 4).any():
+        return ["own: not only quads"]
+    failed = [f"own: {sentence}" for sentence in violations(vertices, polygons.vertices.reshape(-1, 4))]
+    # STL files and files split at seams have no connectivity to compare with.
+    if not failed and source.suffix == ".obj" and topology(read_mesh(source)[1]) != topology(polygons):
+        failed.append("own: topology differs")
+    return failed
+
+
+def _judge(judge: Path, run: Run, result: Path, report: Path, seconds: float) -> dict[str, Any]:
+    command = [
+        sys.executable,
+        str(judge),
+        str(run.path),
+        str(result),
+        "--target",
+        str(run.quads),
+        "--json",
+        str(report),
+    ]
+    report.unlink(missing_ok=True)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
+    except subprocess.TimeoutExpired:
+        return {"failed": ["judge: timeout"]}
+    if not report.exists():
+        return {"failed": ["judge: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]}
+    judgement: dict[str, Any] = json.loads(report.read_text())
+    return judgement

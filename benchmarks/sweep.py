@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Remeshes many models at many counts, judges each result, and writes a table (CSV and Markdown).
+
+Every run has a process of its own, with limits of time and memory. What is done is kept in results.jsonl: a sweep that was
+interrupted goes on where it stopped; results of another build of the library are made again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import json
+import sys
+from collections.abc import Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from pathlib import Path
+
+import table
+from hybrid_quad.core import native
+from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+
+
+def main() -> int:
+    """Runs what is missing and writes the table; exit status 1 if a run is not valid."""
+    arguments = _parser().parse_args()
+    out: Path = arguments.out
+    out.mkdir(parents=True, exist_ok=True)
+    build = _build_id()
+    runs = list(_runs(arguments))
+    if not runs:
+        print("no models to run: name some files, or a folder by --models", file=sys.stderr)
+        return 2
+    done = {} if arguments.fresh else _read_results(out / "results.jsonl", build)
+    missing = [run for run in runs if run.name not in done]
+    print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
+    limits = Limits(arguments.time_limit, arguments.memory_mb)
+    judge = None if arguments.no_judge else arguments.judge
+    with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
+        waiting: set[Future[tuple[Run, Outcome]]] = {
+            pool.submit(lambda run: (run, run_and_judge(run, out, limits, judge)), run) for run in missing
+        }
+        finished = 0
+        try:
+            while waiting:
+                ready, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in ready:
+                    run, outcome = future.result()
+                    finished += 1
+                    done[run.name] = outcome
+                    results.write(json.dumps({"build": build, "name": run.name, **outcome.as_json()}) + "\n")
+                    results.flush()
+                    print(f"[{finished}/{len(missing)}] {_line(run, outcome)}", flush=True)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    outcomes = [done[run.name] for run in runs]
+    (out / "sweep.csv").write_text(table.as_csv(outcomes))
+    (out / "sweep.md").write_text(table.as_markdown(outcomes))
+    print("\n".join(table.summary(outcomes)))
+    print(f"tables: {out / 'sweep.csv'}, {out / 'sweep.md'}")
+    return 0 if all(outcome.status == "valid" for outcome in outcomes) else 1
+
+
+def _line(run: Run, outcome: Outcome) -> str:
+    quads = outcome.report.get("quads", "-")
+    problem = ", ".join(outcome.failed) or (outcome.message.splitlines() or [""])[0]
+    return f"{run.name}: {outcome.status}, {quads} quads, {outcome.seconds:.1f} s {problem}".rstrip()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="*", type=Path, help="mesh files instead of a collection")
+    parser.add_argument(
+        "--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)"
+    )
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="only models whose name contains one of these")
+    parser.add_argument("--quads", nargs="+", type=int, default=[500, 2000, 8000], metavar="N")
+    parser.add_argument("--settings", nargs="+", choices=list(SETTINGS), default=list(SETTINGS))
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "sweep")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at once (default 1: honest timings)")
+    parser.add_argument("--time-limit", type=float, default=Limits.seconds, metavar="SECONDS")
+    parser.add_argument("--memory-mb", type=int, default=Limits.memory_mb)
+    parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")
+    parser.add_argument("--no-judge", action="store_true", help="only our own validation")
+    parser.add_argument("--fresh", action="store_true", help="do everything again")
+    return parser
+
+
+def _runs(arguments: argparse.Namespace) -> Iterator[Run]:
+    files: Iterable[Path] = arguments.files or _manifold_models(arguments.models)
+    for path in files:
+        if arguments.only and not any(part in path.stem for part in arguments.only):
+            continue
+        for quads in arguments.quads:
+            for setting in arguments.settings:
+                yield Run(path.stem, path, quads, setting)
+
+
+def _manifold_models(folder: Path) -> Iterator[Path]:
+    index = folder / "index.csv"
+    if not index.exists():
+        yield from sorted(folder.glob("*.obj"))
+        return
+    with index.open() as file:
+        for row in csv.DictReader(file):
+            if row["edge_mf"] == row["vert_mf"] == "y":
+                yield folder / f"{row['name']}.obj"
+
+
+def _build_id() -> str:
+    return hashlib.sha256(Path(str(native.load().__file__)).read_bytes()).hexdigest()[:12]
+
+
+def _read_results(path: Path, build: str) -> dict[str, Outcome]:
+    done = {}
+    if path.exists():
+        for line in path.read_text().splitlines():
+            row = json.loads(line)
+            if row.pop("build") == build:
+                done[row.pop("name")] = Outcome(**row)
+    return done
+
+
+if __name__ == "__main__":
+    sys.exit(main())
