@@ -1,0 +1,205 @@
+#include "hybrid_quad/frame_field/frame_field.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+
+#include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/split_cones.h"
+#include "hybrid_quad/grid_algebra/quarter_turn.h"
+#include "support/grid_surfaces.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+using test::surface_of;
+
+FrameField solved(const WorkingSurface& surface) { return solve_frame_field(surface, FrameFieldOptions{}, RunContext{}); }
+
+int index_sum(const FrameField& field) {
+  int sum = 0;
+  for (const auto index : field.cone_index) sum += index;
+  return sum;
+}
+
+double largest_turn(const WorkingSurface& surface, const FrameField& field) {
+  const FaceAngles angles(surface.mesh);
+  const auto directions = frame_directions(surface.mesh, field.du, field.dv);
+  double largest = 0;
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h)
+    if (!surface.mesh.is_boundary(h))
+      largest = std::max(largest, std::abs(turn_across(surface.mesh, angles, directions, h).angle));
+  return largest;
+}
+
+TriangleMesh moved(const TriangleMesh& mesh, const Eigen::Matrix3d& map) {
+  std::vector<Vector3> positions = mesh.positions();
+  for (Vector3& p : positions) p = map * p;
+  return {positions, mesh.faces()};
+}
+
+TEST(FrameField, FlatGridIsConstantAndAlignedWithItsBorder) {
+  const WorkingSurface surface = surface_of(test::flat_grid(12, 9, 4, 3), 0.5, 40);
+  const FrameField field = solved(surface);
+  EXPECT_TRUE(violations_of(field, surface).empty());
+  EXPECT_EQ(field.cone_count(), 0);
+  EXPECT_LT(largest_turn(surface, field), 1e-6);
+  for (int f = 0; f < surface.mesh.face_count(); ++f)
+    EXPECT_LT(std::min(std::abs(field.du[f].x()), std::abs(field.du[f].y())), 1e-6);
+}
+
+TEST(FrameField, FramesAreOrthonormal) {
+  const WorkingSurface surface = surface_of(test::torus(30, 14), 0.2, 200);
+  const FrameField field = solved(surface);
+  for (int f = 0; f < surface.mesh.face_count(); ++f) {
+    EXPECT_NEAR(field.du[f].norm(), 1, 1e-12);
+    EXPECT_NEAR(field.dv[f].norm(), 1, 1e-12);
+    EXPECT_NEAR(field.du[f].cross(field.dv[f]).dot(surface.mesh.normal(f)), 1, 1e-12);
+  }
+}
+
+TEST(FrameField, IndicesOfASphereSumToEightQuarters) {
+  const WorkingSurface surface = surface_of(test::icosphere(4), 0.2, 200);
+  const FrameField field = solved(surface);
+  EXPECT_TRUE(violations_of(field, surface).empty());
+  EXPECT_EQ(index_sum(field), 8);
+  EXPECT_EQ(field.cone_count(), 8);
+}
+
+TEST(FrameField, IndicesOfATorusSumToZero) {
+  const WorkingSurface surface = surface_of(test::torus(40, 20), 0.2, 200);
+  const FrameField field = solved(surface);
+  EXPECT_TRUE(violations_of(field, surface).empty());
+  EXPECT_EQ(index_sum(field), 0);
+  EXPECT_LE(field.cone_count(), 16);  // what its curvature, four turns' worth of each sign, could ask for
+}
+
+TEST(FrameField, CubeHasItsConesAtTheCornersWhateverItsFeatures) {
+  const TriangleMesh cube = test::box(6);
+  const WorkingSurface smooth = surface_of(cube, 0.3, 200);
+  const FrameField field = solved(smooth);
+  EXPECT_TRUE(violations_of(field, smooth).empty());
+  EXPECT_EQ(index_sum(field), 8);
+  EXPECT_EQ(field.cone_count(), 8);
+
+  const WorkingSurface sharp = surface_of(cube, 0.3, 40);
+  const FrameField aligned = solved(sharp);
+  EXPECT_TRUE(violations_of(aligned, sharp).empty());
+  EXPECT_EQ(aligned.cone_count(), 0);  // the corners are features: no cones of the field
+  const auto quarters =
+      vertex_quarters(cube, FaceAngles(cube), frame_directions(cube, aligned.du, aligned.dv));
+  int corners = 0;
+  for (int v = 0; v < cube.vertex_count(); ++v) {
+    corners += sharp.features.is_corner[v] != 0;
+    EXPECT_EQ(quarters[v], sharp.features.is_corner[v] ? 1 : 0);
+  }
+  EXPECT_EQ(corners, 8);
+}
+
+TEST(FrameField, DiskHasFourQuartersAndFollowsItsBorder) {
+  // A cap of the sphere: its border has no corners, so all four quarters are cones inside.
+  TriangleMesh sphere = test::icosphere(4);
+  std::vector<std::array<int, 3>> faces;
+  for (const auto& t : sphere.faces())
+    if (sphere.position(t[0]).z() > 0.2 || sphere.position(t[1]).z() > 0.2 || sphere.position(t[2]).z() > 0.2) faces.push_back(t);
+  const WorkingSurface surface = surface_of(TriangleMesh(sphere.positions(), faces), 0.2, 200);
+  const FrameField field = solved(surface);
+  EXPECT_TRUE(violations_of(field, surface).empty());
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
+    const int f = h / 3;
+    int border = 0;
+    for (int i = 0; i < 3; ++i) border += surface.mesh.is_boundary(3 * f + i);
+    if (!surface.mesh.is_boundary(h) || border > 1) continue;
+    const Vector2 d = field.grid_vector(surface.mesh, h);
+    EXPECT_LT(std::min(std::abs(d[0]), std::abs(d[1])), 1e-6 * d.norm());
+  }
+}
+
+TEST(FrameField, MotionAndScaleDoNotChangeIt) {
+  const TriangleMesh mesh = moved(test::icosphere(3), Vector3(1, 0.6, 0.4).asDiagonal());
+  const FrameField reference = solved(surface_of(mesh, 0.2, 200));
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const double scale : {1.0, 1e-30, 1e6}) {
+    const WorkingSurface surface = surface_of(moved(mesh, scale * turn), 0.2 * scale, 200);
+    const FrameField field = solved(surface);
+    EXPECT_TRUE(violations_of(field, surface).empty()) << scale;
+    EXPECT_EQ(field.cone_count(), reference.cone_count()) << scale;
+  }
+}
+
+TEST(FrameField, MatchingsAndConesOfTurnedRowsAreTheSame) {
+  const WorkingSurface surface = surface_of(test::icosphere(3), 0.3, 200);
+  const FrameField field = solved(surface);
+  std::vector<Vector3> du = field.du, dv = field.dv;
+  for (int f = 0; f < surface.mesh.face_count(); ++f)
+    for (int k = 0; k < (f * 7) % 4; ++k) {
+      const Vector3 u = du[f];
+      du[f] = dv[f];
+      dv[f] = -u;
+    }
+  const FrameField again = frame_field_from_rows(surface, du, dv);
+  EXPECT_TRUE(violations_of(again, surface).empty());
+  EXPECT_EQ(again.cone_index, field.cone_index);
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
+    const int o = surface.mesh.opposite(h);
+    const Vector2 here = turned(again.grid_vector(surface.mesh, h), again.matching[h]);
+    EXPECT_LT((here + again.grid_vector(surface.mesh, o)).norm(), here.norm());  // the best of four turns
+  }
+}
+
+TEST(FrameField, NeedlesAndFacesWithoutAreaDoNoHarm) {
+  for (const double scale : {1.0, 1e-30}) {
+    const WorkingSurface needles = surface_of(test::capped_cylinder(200, 4, scale, scale), 0.2 * scale, 40);
+    EXPECT_TRUE(violations_of(solved(needles), needles).empty());
+  }
+  TriangleMesh sphere = test::icosphere(3);
+  std::vector<Vector3> positions = sphere.positions();
+  positions[sphere.to(0)] = positions[sphere.from(0)];
+  const WorkingSurface collapsed = surface_of(TriangleMesh(positions, sphere.faces()), 0.3, 200);
+  const FrameField field = solved(collapsed);
+  EXPECT_EQ(index_sum(field), 8);
+  for (int f = 0; f < collapsed.mesh.face_count(); ++f) EXPECT_TRUE(field.du[f].allFinite() && field.dv[f].allFinite());
+}
+
+TEST(FrameField, StrongConesAreSplit) {
+  // A spike with a right angle left around its tip: three quarters of a turn are missing there.
+  const int n = 24;
+  std::vector<Vector3> positions{Vector3(0, 0, 4)};
+  std::vector<std::array<int, 3>> faces;
+  for (int ring = 1; ring <= 6; ++ring)
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * 3.14159265358979323846 * i / n;
+      positions.push_back(Vector3(ring / 6.0 * std::cos(angle), ring / 6.0 * std::sin(angle), 4.0 - 4.0 * ring / 6));
+    }
+  const auto at = [n](int ring, int i) { return 1 + (ring - 1) * n + i % n; };
+  for (int i = 0; i < n; ++i) {
+    faces.push_back({0, at(1, i), at(1, i + 1)});
+    for (int ring = 1; ring < 6; ++ring) {
+      faces.push_back({at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+      faces.push_back({at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)});
+    }
+  }
+  const WorkingSurface surface = surface_of(TriangleMesh(positions, faces), 0.5, 200);
+  const FrameField field = solved(surface);
+  EXPECT_TRUE(violations_of(field, surface).empty());
+  for (const auto index : field.cone_index) EXPECT_LE(std::abs(index), 1);
+}
+
+TEST(FrameField, SeveralComponentsAndAnEmptyMesh) {
+  const TriangleMesh sphere = test::icosphere(3), sheet = test::flat_grid(4, 4);
+  std::vector<Vector3> positions = sphere.positions();
+  std::vector<std::array<int, 3>> faces = sphere.faces();
+  const int offset = sphere.vertex_count();
+  positions.insert(positions.end(), sheet.positions().begin(), sheet.positions().end());
+  for (const auto& t : sheet.faces()) faces.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  const WorkingSurface surface = surface_of(TriangleMesh(positions, faces), 0.3, 40);
+  EXPECT_TRUE(violations_of(solved(surface), surface).empty());
+  const WorkingSurface empty = surface_of(TriangleMesh(), 1, 40);
+  EXPECT_EQ(solved(empty).cone_count(), 0);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
