@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Remeshes many models at many counts, judges each result, and writes a table (CSV and Markdown).
 
-Every run has a process of its own, with limits of time and memory. What is done is kept in results.jsonl: a sweep that was
-interrupted goes on where it stopped; results of another build of the library are made again.
+Every run has a process of its own, with limits of time and memory. What is done is kept in results.jsonl: a sweep that
+was interrupted goes on where it stopped; results of another build of the library are made again.
 """
 
 from __future__ import annotations
