@@ -1,0 +1,286 @@
+#include "hybrid_quad/singular_patches/triangle_coarsening.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+namespace hybrid_quad {
+
+namespace {
+constexpr auto next = TriangleMesh::next;
+constexpr auto previous = TriangleMesh::previous;
+}  // namespace
+
+CoarseTriangles::CoarseTriangles(const PatchSurface& patch, const PatchBorder& border) {
+  const TriangleMesh& mesh = patch.mesh;
+  positions_ = mesh.positions();
+  for (const auto& t : mesh.faces()) vertex_.insert(vertex_.end(), t.begin(), t.end());
+  opposite_ = mesh.opposites();
+  minimum_.assign(vertex_.size(), -1);
+  alive_.assign(mesh.face_count(), 1);
+  faces_at_.assign(positions_.size(), 0);
+  for (const int v : vertex_) ++faces_at_[v];
+  border_vertex_.assign(positions_.size(), -1);
+  for (const auto& loop : border) add_collar(patch, loop);
+}
+
+int CoarseTriangles::add_face(int a, int b, int c) {
+  const int h = static_cast<int>(vertex_.size());
+  for (const int v : {a, b, c}) {
+    vertex_.push_back(v);
+    opposite_.push_back(-1);
+    minimum_.push_back(-1);
+    ++faces_at_[v];
+  }
+  alive_.push_back(1);
+  return h;
+}
+
+void CoarseTriangles::glue(int g, int h) {
+  opposite_[g] = h;
+  if (h >= 0) opposite_[h] = g;
+}
+
+void CoarseTriangles::add_collar(const PatchSurface& patch, const std::vector<PatchArc>& loop) {
+  const TriangleMesh& mesh = patch.mesh;
+  const int arcs = static_cast<int>(loop.size()), first = loop[0].rising ? 1 : 0;
+  const int outer = static_cast<int>(positions_.size());
+  for (int k = 0; k < arcs; k += 2) {
+    const int maximum = loop[(first + k) % arcs].from;
+    positions_.push_back(mesh.position(maximum));
+    border_vertex_.push_back(maximum);
+    faces_at_.push_back(0);
+  }
+  int last = -1, opening = -1;  // sides along which the next face and the very first one are glued
+  const auto attach = [&](int side_before, int side_after) {
+    if (last >= 0)
+      glue(last, side_before);
+    else
+      opening = side_before;
+    last = side_after;
+  };
+  for (int k = 0; k < arcs; k += 2) {
+    const int here = outer + k / 2, after = outer + (k / 2 + 1) % (arcs / 2);
+    const PatchArc &falling = loop[(first + k) % arcs], &rising = loop[(first + k + 1) % arcs];
+    for (const PatchArc* arc : {&falling, &rising}) {
+      if (arc == &rising) {
+        const int f = add_face(here, after, rising.from);
+        minimum_[f] = static_cast<int>(minima_.size());
+        minima_.push_back({rising.from, falling.id, rising.id});
+        attach(f + 2, f + 1);
+      }
+      for (const int h : arc->halfedges) {
+        const int f = add_face(mesh.to(h), mesh.from(h), arc == &falling ? here : after);
+        glue(f, h);
+        attach(f + 1, f + 2);
+      }
+    }
+  }
+  glue(last, opening);
+}
+
+void CoarseTriangles::fan(int h, std::vector<int>& out) const {
+  out.clear();
+  int g = h;
+  do {
+    out.push_back(g);
+    g = opposite_[previous(g)];
+  } while (g >= 0 && g != h);
+}
+
+/// Whether from(h), an inner vertex, may be drawn into to(h).
+bool CoarseTriangles::can_collapse(int h) {
+  const int o = opposite_[h];
+  if (o < 0 || on_border(from(h))) return false;
+  const int u = from(h), v = to(h), f = h / 3, g = o / 3;
+  if (u == v || f == g) return false;
+  for (const int side : {next(h), previous(h), next(o), previous(o)}) {
+    const int beyond = opposite_[side];
+    if (beyond >= 0 && (beyond / 3 == f || beyond / 3 == g)) return false;
+  }
+  const int a = from(previous(h)), b = from(previous(o));
+  const auto enough = [&](int w, int faces) { return faces >= (on_border(w) ? 1 : 3); };
+  const int lost = a == b ? 2 : 1;
+  if (!enough(a, faces_at_[a] - lost) || !enough(b, faces_at_[b] - lost)) return false;
+  if (!enough(v, faces_at_[u] + faces_at_[v] - 4)) return false;
+  fan(h, fan_);
+  int joined = 0;
+  for (const int e : fan_) joined += to(e) == v;
+  return joined == 1;  // another edge between them would become a loop
+}
+
+/// No face turns over and no edge gets too long. Collar faces have no area at first and may become anything.
+bool CoarseTriangles::keeps_shape(int h, double longest) {
+  const Vector3 goal = positions_[to(h)];
+  fan(h, fan_);
+  for (std::size_t i = 1; i < fan_.size(); ++i) {
+    const Vector3 &p = positions_[from(fan_[i])], &q = positions_[to(fan_[i])], &r = positions_[from(previous(fan_[i]))];
+    if (edge_length(h) > 0 && (q - goal).norm() > longest) return false;
+    if (i + 1 == fan_.size()) continue;  // goes with the edge
+    const Vector3 before = area_normal(p, q, r), now = area_normal(goal, q, r);
+    if (before.norm() > 1e-3 * (q - r).squaredNorm() && now.dot(before) < 0.3 * now.norm() * before.norm()) return false;
+  }
+  return true;
+}
+
+void CoarseTriangles::collapse(int h, std::vector<int>& touched) {
+  const int o = opposite_[h], u = from(h), v = to(h);
+  fan(h, fan_);
+  for (const int e : fan_) vertex_[e] = v;
+  faces_at_[v] += faces_at_[u];
+  faces_at_[u] = 0;
+  touched = fan_;
+  for (const int side : {h, o}) {
+    for (int i = 0; i < 3; ++i) --faces_at_[vertex_[3 * (side / 3) + i]];
+    alive_[side / 3] = 0;
+    const int x = opposite_[next(side)], y = opposite_[previous(side)];
+    const int below = std::max(minimum_[next(side)], minimum_[previous(side)]);
+    for (const auto& [e, beyond] : {std::make_pair(x, y), std::make_pair(y, x)}) {
+      if (e < 0) continue;
+      opposite_[e] = beyond;
+      if (beyond < 0) minimum_[e] = below;
+    }
+  }
+}
+
+void CoarseTriangles::coarsen(double length, const RunContext& context) {
+  using Entry = std::tuple<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const auto push = [&](int h) {
+    const double l = edge_length(h);
+    if (l < length) queue.emplace(l, h);
+  };
+  for (int h = 0; h < static_cast<int>(vertex_.size()); ++h) push(h);
+  std::vector<int> touched;
+  for (int steps = 0; !queue.empty(); ++steps) {
+    if (steps % 4096 == 0) context.checkpoint();
+    const auto [expected, h] = queue.top();
+    queue.pop();
+    if (!alive_[h / 3] || edge_length(h) != expected || !can_collapse(h) || !keeps_shape(h, 2 * length)) continue;
+    collapse(h, touched);
+    for (const int e : touched)
+      if (alive_[e / 3]) {
+        push(e);
+        push(previous(e));
+        push(next(e));
+      }
+  }
+}
+
+bool CoarseTriangles::can_flip(int h) const {
+  const int o = opposite_[h];
+  if (o < 0 || o / 3 == h / 3) return false;
+  const int a = from(h), b = to(h), c = from(previous(h)), d = from(previous(o));
+  if (c == d) return false;
+  const auto enough = [&](int v) { return faces_at_[v] - 1 >= (on_border(v) ? 1 : 3); };
+  if (!enough(a) || !enough(b)) return false;
+  const auto off = [&](int v, int change) {
+    const int x = faces_at_[v] + change - (on_border(v) ? 3 : 6);
+    return x * x;
+  };
+  if (off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1) >= off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0)) return false;
+  const Vector3 &pa = positions_[a], &pb = positions_[b], &pc = positions_[c], &pd = positions_[d];
+  const Vector3 old = area_normal(pa, pb, pc) + area_normal(pb, pa, pd);
+  const double least = 0.1 * old.squaredNorm();
+  return area_normal(pc, pa, pd).dot(old) > least && area_normal(pd, pb, pc).dot(old) > least;
+}
+
+void CoarseTriangles::flip(int h) {
+  const int o = opposite_[h], a = from(h), b = to(h), c = from(previous(h)), d = from(previous(o));
+  const int h1 = next(h), h2 = previous(h), o1 = next(o), o2 = previous(o);
+  // (a, b, c), (b, a, d) become (d, c, a), (c, d, b): sides h, o turn; two outer sides change faces.
+  const int bc = opposite_[h1], ca = opposite_[h2], ad = opposite_[o1], db = opposite_[o2];
+  const int bc_below = minimum_[h1], ca_below = minimum_[h2], ad_below = minimum_[o1], db_below = minimum_[o2];
+  vertex_[h] = d, vertex_[h1] = c, vertex_[h2] = a;
+  vertex_[o] = c, vertex_[o1] = d, vertex_[o2] = b;
+  // A side of one of the two faces may be glued to another side of them: name it by its new place.
+  const auto moved = [&](int e) { return e == h1 ? o2 : e == h2 ? h1 : e == o1 ? h2 : e == o2 ? o1 : e; };
+  const int new_ca = moved(ca), new_ad = moved(ad), new_db = moved(db), new_bc = moved(bc);
+  for (const auto& [side, beyond, below] : {std::make_tuple(h1, new_ca, ca_below), std::make_tuple(h2, new_ad, ad_below),
+                                            std::make_tuple(o1, new_db, db_below), std::make_tuple(o2, new_bc, bc_below)}) {
+    glue(side, beyond);
+    minimum_[side] = below;
+  }
+  --faces_at_[a], --faces_at_[b], ++faces_at_[c], ++faces_at_[d];
+}
+
+void CoarseTriangles::flip_towards_six() {
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    bool changed = false;
+    for (int h = 0; h < static_cast<int>(vertex_.size()); ++h)
+      if (alive_[h / 3] && h < opposite_[h] && can_flip(h)) {
+        flip(h);
+        changed = true;
+      }
+    if (!changed) return;
+  }
+}
+
+void CoarseTriangles::smooth(const SurfaceIndex& surface, int sweeps) {
+  std::vector<Vector3> sum(positions_.size());
+  std::vector<int> count(positions_.size());
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::fill(sum.begin(), sum.end(), Vector3::Zero());
+    std::fill(count.begin(), count.end(), 0);
+    for (int h = 0; h < static_cast<int>(vertex_.size()); ++h) {
+      if (!alive_[h / 3]) continue;
+      sum[from(h)] += positions_[to(h)];
+      ++count[from(h)];
+    }
+    for (std::size_t v = 0; v < positions_.size(); ++v)
+      if (count[v] > 0 && !on_border(static_cast<int>(v))) positions_[v] = surface.nearest(sum[v] / count[v]).position;
+  }
+}
+
+void CoarseTriangles::raise_low_valences() {
+  for (int h = 0; h < static_cast<int>(vertex_.size()); ++h) {
+    if (!alive_[h / 3] || on_border(from(h)) || faces_at_[from(h)] >= 3) continue;
+    const int f = 3 * (h / 3);  // cut into three at its middle
+    const int center = static_cast<int>(positions_.size());
+    const std::array<int, 3> v{vertex_[f], vertex_[f + 1], vertex_[f + 2]};
+    const Vector3 middle = (positions_[v[0]] + positions_[v[1]] + positions_[v[2]]) / 3.0;
+    positions_.push_back(middle);
+    border_vertex_.push_back(-1);
+    faces_at_.push_back(1);
+    vertex_[f + 2] = center;
+    --faces_at_[v[2]];
+    const int g = add_face(v[1], v[2], center), k = add_face(v[2], v[0], center);
+    for (const auto& [from_side, to_side] : {std::make_pair(f + 1, g), std::make_pair(f + 2, k)}) {
+      const int beyond = opposite_[from_side];
+      minimum_[to_side] = minimum_[from_side];
+      minimum_[from_side] = -1;
+      glue(to_side, beyond == f + 1 ? g : beyond == f + 2 ? k : beyond);
+    }
+    glue(f + 1, g + 2);
+    glue(g + 1, k + 2);
+    glue(k + 1, f + 2);
+  }
+}
+
+void CoarseTriangles::compact() {
+  std::vector<int> new_face(alive_.size(), -1), new_vertex(positions_.size(), -1);
+  int faces = 0, vertices = 0;
+  for (std::size_t f = 0; f < alive_.size(); ++f)
+    if (alive_[f]) new_face[f] = faces++;
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    if (faces_at_[v] == 0) continue;
+    new_vertex[v] = vertices++;
+    positions_[new_vertex[v]] = Vector3(positions_[v]);
+    border_vertex_[new_vertex[v]] = border_vertex_[v];
+    faces_at_[new_vertex[v]] = faces_at_[v];
+  }
+  for (std::size_t h = 0; h < vertex_.size(); ++h) {
+    if (!alive_[h / 3]) continue;
+    const int n = 3 * new_face[h / 3] + static_cast<int>(h % 3), o = opposite_[h];
+    vertex_[n] = new_vertex[vertex_[h]];
+    opposite_[n] = o < 0 ? -1 : 3 * new_face[o / 3] + o % 3;
+    minimum_[n] = minimum_[h];
+  }
+  for (std::vector<int>* sides : {&vertex_, &opposite_, &minimum_}) sides->resize(3 * faces);
+  positions_.resize(vertices);
+  border_vertex_.resize(vertices);
+  faces_at_.resize(vertices);
+  alive_.assign(faces, 1);
+}
+
+}  // namespace hybrid_quad

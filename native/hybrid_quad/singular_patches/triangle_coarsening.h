@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/singular_patches/patch_border.h"
+
+namespace hybrid_quad {
+
+/// Triangles glued by half-edge (3 f + i), vertices by number; two vertices may be joined by several edges. Kept by every
+/// operation: no edge is a loop, inner vertices keep three faces or more, border edges and vertices stay.
+class CoarseTriangles {
+ public:
+  /// The patch's triangles inside a collar: a strip of triangles along every border loop whose outer border has the
+  /// border maxima as its only vertices. So the border is right from the start and all vertices of the patch are free.
+  CoarseTriangles(const PatchSurface& patch, const PatchBorder& border);
+
+  /// Collapses edges shorter than `length`, shortest first.
+  void coarsen(double length, const RunContext& context);
+  /// Flips edges towards six faces at every vertex.
+  void flip_towards_six();
+  /// Moves inner vertices to the mean of their neighbours, on the surface.
+  void smooth(const SurfaceIndex& surface, int sweeps);
+  /// Gives inner vertices with fewer than three faces more of them.
+  void raise_low_valences();
+  /// Drops what is gone.
+  void compact();
+
+  int face_count() const { return static_cast<int>(vertex_.size()) / 3; }
+  int from(int h) const { return vertex_[h]; }
+  int to(int h) const { return vertex_[TriangleMesh::next(h)]; }
+  int opposite(int h) const { return opposite_[h]; }
+  /// The border minimum below border half-edge h: index into minima(), -1 inside.
+  int minimum(int h) const { return minimum_[h]; }
+  const std::vector<Vector3>& positions() const { return positions_; }
+
+  /// What a border edge stands for: the arc down from one maximum to a minimum and the arc up to the next.
+  struct BorderMinimum {
+    int vertex;         ///< of the patch mesh
+    int falling_arc, rising_arc;
+  };
+  const std::vector<BorderMinimum>& minima() const { return minima_; }
+  /// The patch vertex that a border vertex is, -1 for inner ones.
+  int border_vertex(int v) const { return border_vertex_[v]; }
+
+ private:
+  void add_collar(const PatchSurface& patch, const std::vector<PatchArc>& loop);
+  int add_face(int a, int b, int c);
+  void glue(int g, int h);
+  bool on_border(int v) const { return border_vertex_[v] >= 0; }
+  double edge_length(int h) const { return (positions_[to(h)] - positions_[from(h)]).norm(); }
+  Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c) const { return (b - a).cross(c - a); }
+  /// Outgoing half-edges of an inner vertex, counterclockwise from h.
+  void fan(int h, std::vector<int>& out) const;
+  bool can_collapse(int h);
+  bool keeps_shape(int h, double longest);
+  void collapse(int h, std::vector<int>& touched);
+  bool can_flip(int h) const;
+  void flip(int h);
+
+  std::vector<int> vertex_, opposite_, minimum_;
+  std::vector<char> alive_;             // #F
+  std::vector<int> faces_at_;           // #V
+  std::vector<int> border_vertex_;      // #V
+  std::vector<Vector3> positions_;
+  std::vector<BorderMinimum> minima_;
+  std::vector<int> fan_;
+};
+
+}  // namespace hybrid_quad
