@@ -86,18 +86,6 @@ bool is_combed(const FrameField& field, const TriangleMesh& mesh) {
   return true;
 }
 
-/// Holonomy of the stored matchings around an interior vertex, as an index modulo 4.
-int index_of_matchings(const FrameField& field, const TriangleMesh& mesh, int v) {
-  int turns = 0;
-  const int first = mesh.outgoing(v);
-  int h = first;
-  do {
-    turns += field.matching[TriangleMesh::previous(h)];
-    h = mesh.rotate_ccw(h);
-  } while (h >= 0 && h != first);
-  return inverse_turns(wrap_turns(turns));
-}
-
 }  // namespace
 
 FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vector3> du, std::vector<Vector3> dv) {
@@ -140,13 +128,14 @@ std::vector<std::string> violations_of(const FrameField& field, const WorkingSur
   }
   if (!is_combed(field, mesh)) found.push_back("frames are not combed");
 
-  const std::vector<int> quarters = vertex_quarters(mesh, FaceAngles(mesh), frame_directions(mesh, field.du, field.dv));
+  const std::vector<int> quarters =
+      vertex_quarters(mesh, FaceAngles(mesh), frame_directions(mesh, field.du, field.dv), &field.matching);
   int sum = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const bool constrained = surface.features.on_feature[v] || mesh.is_boundary_vertex(v);
     sum += constrained ? quarters[v] : field.cone_index[v];
     if (constrained && field.cone_index[v] != 0) found.push_back(at("cone on a feature", "vertex", v));
-    if (!constrained && mesh.outgoing(v) >= 0 && wrap_turns(field.cone_index[v]) != index_of_matchings(field, mesh, v))
+    if (!constrained && field.cone_index[v] != quarters[v])
       found.push_back(at("cone index disagrees with matchings", "vertex", v));
   }
   if (sum != 4 * mesh.euler_characteristic())

@@ -46,7 +46,13 @@ FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const 
   return {wrap_turns(quarters), angle - quarters * kQuarter};
 }
 
-int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v) {
+FrameTurn turn_across(const FaceAngles& angles, const std::vector<double>& directions, int h, int opposite, int quarters) {
+  const double angle = directions[opposite / 3] - directions[h / 3] - angles.transport(h, opposite);
+  return {quarters, std::remainder(angle - quarters * kQuarter, 2 * kPi)};
+}
+
+int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v,
+                const std::vector<std::uint8_t>* matching) {
   const int first = mesh.outgoing(v);
   if (first < 0) return 0;
   double fan = 0, turning = 0;
@@ -54,7 +60,9 @@ int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::v
   do {
     fan += angles.corner(h);
     last = TriangleMesh::previous(h);
-    if (!mesh.is_boundary(last)) turning += turn_across(mesh, angles, directions, last).angle;
+    if (!mesh.is_boundary(last))
+      turning += matching ? turn_across(angles, directions, last, mesh.opposite(last), (*matching)[last]).angle
+                          : turn_across(mesh, angles, directions, last).angle;
     h = mesh.rotate_ccw(h);
   } while (h >= 0 && h != first);
   if (h >= 0) return nearest_quarters(2 * kPi - fan + turning);
@@ -63,9 +71,10 @@ int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::v
   return 2 - nearest_quarters(sector);
 }
 
-std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions) {
+std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
+                                 const std::vector<std::uint8_t>* matching) {
   std::vector<int> quarters(mesh.vertex_count());
-  for (int v = 0; v < mesh.vertex_count(); ++v) quarters[v] = quarters_at(mesh, angles, directions, v);
+  for (int v = 0; v < mesh.vertex_count(); ++v) quarters[v] = quarters_at(mesh, angles, directions, v, matching);
   return quarters;
 }
 

@@ -17,14 +17,20 @@ struct FrameTurn {
 /// Frames that say nothing (zero, not finite, orientation reversed) are taken along half-edge 0.
 std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
 
-/// \pre h is interior
+/// The turn nearest to none. \pre h is interior
 FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int h);
+
+/// The turn that goes with a given matching, in [-pi, pi]: frames that were changed after they were matched.
+FrameTurn turn_across(const FaceAngles& angles, const std::vector<double>& directions, int h, int opposite, int quarters);
 
 /// Quarters of a turn that the field makes at vertex v. Interior: +1 where three quads meet, -1 where five do. Boundary:
 /// 2 minus the quads' corners there. 0 for an isolated vertex.
-int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v);
+/// \param matching  3 #F, as in FrameField; null: the nearest turns
+int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int v,
+                const std::vector<std::uint8_t>* matching = nullptr);
 
 /// Of every vertex; they sum to 4 times the Euler characteristic.
-std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions);
+std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
+                                 const std::vector<std::uint8_t>* matching = nullptr);
 
 }  // namespace hybrid_quad
