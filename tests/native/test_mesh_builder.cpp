@@ -176,6 +176,20 @@ TEST(MeshBuilder, ResolvesFacesWithoutAreaWithoutOpeningHoles) {
     EXPECT_FALSE(has_no_area(built.mesh.position(f[0]), built.mesh.position(f[1]), built.mesh.position(f[2])));
 }
 
+TEST(MeshBuilder, ClosesCracksOfZeroWidth) {
+  // A vertex in the middle of an edge of one face only: the other face does not know of it.
+  const TriangleMesh sphere = test::icosphere(1);
+  PolygonSoup soup = test::soup_of(sphere);
+  const int a = sphere.from(0), b = sphere.to(0), c = sphere.to(1), m = sphere.vertex_count();
+  soup.positions.push_back(0.5 * (sphere.position(a) + sphere.position(b)));
+  soup.face_vertices[0] = a, soup.face_vertices[1] = m, soup.face_vertices[2] = c;
+  add_face(soup, {m, b, c});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "t_junction"));
+  EXPECT_EQ(boundary_edges(built.mesh), 0);
+  EXPECT_EQ(built.mesh.euler_characteristic(), 2);
+}
+
 TEST(MeshBuilder, RefusesWhatIsNoSurface) {
   const PolygonSoup good = test::soup_of(test::icosphere(2));
   EXPECT_EQ(refusal(PolygonSoup{}), "empty_mesh");

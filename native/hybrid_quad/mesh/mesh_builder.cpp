@@ -9,6 +9,7 @@
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
+#include "hybrid_quad/mesh/t_junctions.h"
 #include "hybrid_quad/mesh/vertex_welding.h"
 
 namespace hybrid_quad {
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly all others a vertex must lie
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
+constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
 
 /// Builds the mesh step by step; every step notes the defects that it found.
@@ -318,6 +320,8 @@ BuiltMesh MeshBuilder::build() {
   weld();
   drop_duplicates();
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
+  note("t_junction", "vertex", split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_),
+       "the edge beside it is split, which closes the crack");
   BuiltMesh built = glue();
   drop_components_without_area(built);
   return built;

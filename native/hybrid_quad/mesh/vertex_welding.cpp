@@ -43,8 +43,9 @@ std::vector<int> places_of(const std::vector<Vector3>& positions) {
   return place;
 }
 
-/// Directed edges with one face only.
-std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>& faces, std::size_t* edge_count = nullptr) {
+}  // namespace
+
+std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>& faces, std::size_t* edge_count) {
   struct Side {
     int low, high, from;
   };
@@ -64,8 +65,6 @@ std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>
   if (edge_count) *edge_count = edges;
   return open;
 }
-
-}  // namespace
 
 std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
   struct OpenEdge {

@@ -14,6 +14,9 @@ std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const st
 /// The same for a soup of loose triangles whose corners differ by rounding: corners nearer than `tolerance` merge.
 std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance);
 
+/// Directed edges with one face only, in the order of their vertices.
+std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>& faces, std::size_t* edge_count = nullptr);
+
 /// Share of edges that have one face only.
 double open_edge_share(const std::vector<std::array<int, 3>>& faces);
 
