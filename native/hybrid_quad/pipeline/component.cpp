@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "hybrid_quad/assemble/assemble.h"
+#include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/sizing.h"
 
@@ -144,7 +145,9 @@ class ComponentRemesher {
       if (euler_characteristic(complex) != mesh_.euler_characteristic())
         throw InternalError("assemble", "the quads have another topology than the surface");
       out.repair = repair_complex(complex);
-      return to_quad_mesh(complex);
+      QuadMesh mesh = to_quad_mesh(complex);
+      order_feature_edges(mesh, mesh_, result_.features);
+      return mesh;
     });
     require_sound("assemble", violations_of(out.mesh));
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.mesh, "assemble"));

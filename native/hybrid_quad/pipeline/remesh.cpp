@@ -18,7 +18,7 @@ struct Component {
 std::vector<Component> split_components(const TriangleMesh& mesh) {
   std::vector<int> id(mesh.face_count(), -1);
   std::vector<Component> out;
-  std::vector<int> local(mesh.vertex_count(), -1), members;
+  std::vector<int> local(mesh.vertex_count(), -1), local_face(mesh.face_count(), -1), members;
   for (int seed = 0; seed < mesh.face_count(); ++seed) {
     if (id[seed] >= 0) continue;
     const int component = static_cast<int>(out.size());
@@ -34,7 +34,8 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
     std::sort(members.begin(), members.end());
     std::vector<Vector3> positions;
     std::vector<std::array<int, 3>> faces;
-    std::vector<int> vertex;
+    std::vector<int> vertex, opposite;
+    for (std::size_t i = 0; i < members.size(); ++i) local_face[members[i]] = static_cast<int>(i);
     for (const int f : members) {
       std::array<int, 3> face = mesh.face(f);
       for (int& v : face) {
@@ -46,9 +47,13 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
         v = local[v];
       }
       faces.push_back(face);
+      for (int k = 0; k < 3; ++k) {
+        const int o = mesh.opposite(3 * f + k);
+        opposite.push_back(o < 0 ? -1 : 3 * local_face[o / 3] + o % 3);
+      }
     }
     for (const int v : vertex) local[v] = -1;
-    out.push_back({TriangleMesh(std::move(positions), std::move(faces)), std::move(vertex)});
+    out.push_back({TriangleMesh(std::move(positions), std::move(faces), std::move(opposite)), std::move(vertex)});
   }
   return out;
 }
