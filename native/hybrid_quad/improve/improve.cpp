@@ -14,7 +14,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   ImproveReport report;
   if (quads.quads.empty() || input.face_count() == 0) return report;
   constexpr double kCurvatureWeight = 20;
-  constexpr int kSweepsBefore = 5;
+  constexpr int kSweepsBefore = 5, kSweepsAfter = 6;
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return report;
@@ -31,6 +31,11 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     report.connectivity_moves += improve_valences(piece, smoother, context);
   }
   smoother.smooth(options.smoothing_sweeps, context);
+  if (options.edit_connectivity) {
+    const int moves = improve_shapes(piece, smoother, context);
+    if (moves > 0) smoother.smooth(kSweepsAfter, context);
+    report.connectivity_moves += moves;
+  }
   if (options.fit) fit_to_input(piece, smoother, context);
   report.inverted_after = untangle(piece, smoother, context);
   quads = piece.mesh.extract();

@@ -149,6 +149,7 @@ struct SearchLimits {
   double least_gain;
   int trials;
   int beam;
+  std::size_t kept;  ///< sequences to return
 };
 
 /// Best-first search for short sequences of moves around a vertex that lower the valence cost.
@@ -156,18 +157,16 @@ class SequenceSearch {
  public:
   explicit SequenceSearch(EditMesh& mesh) : mesh_(mesh) {}
 
-  /// The best sequences, best first; the mesh is as before.
-  const std::vector<Sequence>& run(int v, const SearchLimits& limits) {
+  /// The best sequences that begin at a quad around `seeds`, best first; the mesh is as before.
+  const std::vector<Sequence>& run(const std::vector<int>& seeds, const SearchLimits& limits) {
     limits_ = limits;
     trials_left_ = limits.trials;
     best_.clear();
-    extend({v}, Sequence{});
+    extend(seeds, Sequence{});
     return best_;
   }
 
  private:
-  static constexpr std::size_t kKept = 3;
-
   void extend(const std::vector<int>& seeds, const Sequence& so_far) {
     struct Candidate {
       Sequence sequence;
@@ -225,7 +224,7 @@ class SequenceSearch {
     const auto place = std::find_if(best_.begin(), best_.end(),
                                     [&](const Sequence& other) { return sequence.cost < other.cost - kWorthIt; });
     best_.insert(place, sequence);
-    if (best_.size() > kKept) best_.pop_back();
+    if (best_.size() > limits_.kept) best_.pop_back();
   }
 
   EditMesh& mesh_;
@@ -234,11 +233,11 @@ class SequenceSearch {
   std::vector<Sequence> best_;
 };
 
-void make_sequence(Workpiece& piece, const Sequence& sequence, bool with_positions) {
+void make_sequence(Workpiece& piece, const Sequence& sequence) {
   for (int i = 0; i < sequence.length; ++i) {
     const Move& move = sequence.moves[i];
     int kept, gone;
-    if (with_positions && move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone) &&
+    if (move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone) &&
         piece.mesh.is_free(kept) && piece.face[kept] >= 0) {
       const Vector3 middle = 0.5 * (piece.mesh.positions[kept] + piece.mesh.positions[gone]);
       const SurfacePoint point = piece.walk(middle, piece.face[kept]);
@@ -275,12 +274,12 @@ std::vector<int> touched_by(Workpiece& piece, const Sequence& sequence) {
 
 /// Tries the best sequences around v until one stays. \returns its length, 0 if none does
 int improve_around(Workpiece& piece, Smoother& smoother, SequenceSearch& search, int v, const SearchLimits& limits) {
-  constexpr double kGoodEnough = 0.5;
-  const std::vector<Sequence> sequences = search.run(v, limits);
+  constexpr double kGoodEnough = 0.7;
+  const std::vector<Sequence> sequences = search.run({v}, limits);
   for (const Sequence& sequence : sequences) {
     Trial trial(piece, smoother, touched_by(piece, sequence));
-    make_sequence(piece, sequence, true);
-    if (trial.keep(kGoodEnough)) return sequence.length;
+    make_sequence(piece, sequence);
+    if (trial.keep(kGoodEnough, 0)) return sequence.length;
   }
   return 0;
 }
@@ -342,7 +341,7 @@ double Trial::worst() const {
   return least;
 }
 
-bool Trial::keep(double good_enough) {
+bool Trial::keep(double good_enough, double gain) {
   std::vector<int> inside;
   for (const int v : vertices_)
     if (piece_.mesh.valence(v) > 0) inside.push_back(v);
@@ -350,7 +349,7 @@ bool Trial::keep(double good_enough) {
   smoother_.relax(inside, 2, 0.1);
   smoother_.relax(inside, 3, 1e-3);
   collect_quads();
-  if (worst() >= std::min(before_, good_enough)) {
+  if (worst() >= std::min(before_ + gain, good_enough)) {
     piece_.mesh.forget_log();
     return true;
   }
@@ -366,7 +365,7 @@ bool Trial::keep(double good_enough) {
 }
 
 int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr SearchLimits kLimits{3, 30, 2.0, 6000, 6};
+  constexpr SearchLimits kLimits{3, 30, 2.0, 6000, 6, 3};
   SequenceSearch search(piece.mesh);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
@@ -378,7 +377,7 @@ int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& 
 }
 
 int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5};
+  constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5, 3};
   constexpr int kPasses = 2;
   SequenceSearch search(piece.mesh);
   int moves = 0;
@@ -391,6 +390,27 @@ int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& con
     }
     moves += made;
     if (made == 0) break;
+  }
+  return moves;
+}
+
+int improve_shapes(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr double kBad = 0.4, kGain = 0.1;
+  constexpr SearchLimits kLimits{2, 8, -4.5, 800, 8, 16};
+  SequenceSearch search(piece.mesh);
+  int moves = 0;
+  for (int q = 0; q < piece.mesh.quad_count(); ++q) {
+    if (!piece.mesh.alive(q) || smoother.signed_quality(q) >= kBad) continue;
+    context.checkpoint();
+    const EditMesh::Quad corners = piece.mesh.quad(q);
+    const std::vector<Sequence> sequences = search.run({corners.begin(), corners.end()}, kLimits);
+    for (const Sequence& sequence : sequences) {
+      Trial trial(piece, smoother, touched_by(piece, sequence));
+      make_sequence(piece, sequence);
+      if (!trial.keep(kBad + kGain, kGain)) continue;
+      moves += sequence.length;
+      break;
+    }
   }
   return moves;
 }

@@ -23,13 +23,16 @@ int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& 
 /// The same around every irregular vertex, up to two moves each.
 int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context);
 
+/// Moves around quads of bad shape that make the worst quad there clearly better, even where valences suffer a little.
+int improve_shapes(Workpiece& piece, Smoother& smoother, const RunContext& context);
+
 /// A change of connectivity on trial: what is around it, and how to get back. Take the trial, change the mesh, then
 /// `keep`: it relaxes the vertices around and undoes everything if their quads became worse.
 class Trial {
  public:
   Trial(Workpiece& piece, Smoother& smoother, std::vector<int> vertices);
-  /// \returns whether the change stays. \param good_enough  a worst quad of this quality is accepted whatever it was
-  bool keep(double good_enough);
+  /// \returns whether the change stays: the worst quad around is better by `gain`, or at least `good_enough`
+  bool keep(double good_enough, double gain);
 
  private:
   double worst() const;

@@ -82,7 +82,7 @@ int open_straight_corners(Workpiece& piece, Smoother& smoother, const RunContext
       const Place place = places[i];
       Trial trial(piece, smoother, {place.a, place.v, place.b, place.c, place.x, place.y});
       apply(piece, smoother, place);
-      if (!trial.keep(kGoodEnough)) continue;
+      if (!trial.keep(kGoodEnough, 0)) continue;
       ++opened;
       break;
     }
