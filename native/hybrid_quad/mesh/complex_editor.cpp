@@ -134,6 +134,82 @@ void ComplexEditor::inset(int q, int anchor) {
   alive_count_ += 4;
 }
 
+namespace {
+
+/// The vertices of restar's hexagon that gain a quad: those after to(d) on the left and before it on the right.
+std::array<int, 2> gaining(const QuadComplex& c, int d) {
+  return {c.to(QuadComplex::next(d)), c.from(QuadComplex::previous(c.opposite[d]))};
+}
+
+}  // namespace
+
+bool ComplexEditor::can_restar(int d) const {
+  const int o = complex_.opposite[d];
+  if (!alive(d / 4) || o < 0 || o / 4 == d / 4 || complex_.curve[d] >= 0) return false;
+  const int joined = complex_.from(d), spared = complex_.to(d);
+  if (corners_[spared] < (border_[spared] ? 2 : 4)) return false;
+  const auto [c, b] = gaining(complex_, d);
+  return b != c && b != joined && c != joined;
+}
+
+int ComplexEditor::restar_valence_cost(int d) const {
+  const auto change = [&](int v, int by) {
+    const int off = corners_[v] - (border_[v] ? 2 : 4);
+    return (off + by) * (off + by) - off * off;
+  };
+  const auto [c, b] = gaining(complex_, d);
+  return change(complex_.to(d), -1) + change(c, 1) + change(b, 1) + 1;
+}
+
+void ComplexEditor::restar(int d, int anchor) {
+  const int o = complex_.opposite[d], l = 4 * (d / 4), r = 4 * (o / 4), n = static_cast<int>(complex_.opposite.size());
+  const int d1 = QuadComplex::next(d), d2 = d ^ 2, d3 = QuadComplex::previous(d);
+  const int o1 = QuadComplex::next(o), o2 = o ^ 2, o3 = QuadComplex::previous(o);
+  const int u = complex_.from(d), v = complex_.to(d), c = complex_.to(d1), e = complex_.to(d2);
+  const int a = complex_.to(o1), b = complex_.to(o2), w = static_cast<int>(complex_.positions.size());
+  const auto& p = complex_.positions;
+  const Vector3 middle = (p[u] + p[v] + p[c] + p[e] + p[a] + p[b]) / 6.0;
+  complex_.positions.push_back(middle);
+  complex_.kind.push_back(VertexKind::kFree);
+  complex_.anchor.push_back(anchor);
+  corners_.push_back(3);
+  border_.push_back(0);
+  --corners_[v];
+  ++corners_[b];
+  ++corners_[c];
+
+  // The six outer sides and where they go: left quad (w, c, e, u), right quad (w, u, a, b), new quad (w, b, v, c).
+  const std::array<int, 6> old_side{d1, d2, d3, o1, o2, o3}, new_side{n + 2, l + 1, l + 2, r + 1, r + 2, n + 1};
+  std::array<int, 6> beyond, curve;
+  for (int i = 0; i < 6; ++i) {
+    beyond[i] = complex_.opposite[old_side[i]];
+    curve[i] = complex_.curve[old_side[i]];
+    for (int k = 0; k < 6; ++k)
+      if (complex_.opposite[old_side[i]] == old_side[k]) beyond[i] = new_side[k];
+  }
+  for (std::vector<int>* sides : {&complex_.opposite, &complex_.vertex, &complex_.curve}) sides->resize(n + 4, -1);
+  alive_.push_back(1);
+  ++alive_count_;
+  const std::array<std::array<int, 4>, 3> quads{{{w, c, e, u}, {w, u, a, b}, {w, b, v, c}}};
+  const std::array<int, 3> first{l, r, n};
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 4; ++i) {
+      complex_.vertex[first[k] + i] = quads[k][i];
+      complex_.curve[first[k] + i] = -1;
+    }
+  const auto glue = [&](int x, int y) {
+    complex_.opposite[x] = y;
+    if (y >= 0) complex_.opposite[y] = x;
+  };
+  glue(l, n + 3);
+  glue(l + 3, r);
+  glue(r + 3, n);
+  for (int i = 0; i < 6; ++i) {
+    glue(new_side[i], beyond[i]);
+    complex_.curve[new_side[i]] = curve[i];
+  }
+}
+
 std::vector<int> ComplexEditor::compact() {
   QuadComplex& c = complex_;
   std::vector<int> new_quad(alive_.size(), -1), new_vertex(c.positions.size(), -1);

@@ -32,6 +32,14 @@ class ComplexEditor {
   /// \param anchor  of the four new vertices (free)
   void inset(int q, int anchor);
 
+  /// Whether restar(d) is possible: an inner side that is no feature between two quads, whose end can spare a quad.
+  bool can_restar(int d) const;
+  /// Takes the side d away: the hexagon of its two quads becomes three quads around a new free vertex, which is joined to
+  /// from(d). to(d) loses a quad. \pre can_restar(d)
+  void restar(int d, int anchor);
+  /// How much restar(d) raises the sum of squared differences of valences from 4.
+  int restar_valence_cost(int d) const;
+
   /// Drops removed quads and vertices no quad uses; numbers keep their order.
   /// \return #old vertices: the new number, or -1
   std::vector<int> compact();

@@ -40,15 +40,16 @@ int euler_characteristic(const QuadComplex& complex);
 std::vector<std::string> violations_of(const QuadComplex& complex);
 
 struct ComplexRepairReport {
-  int cancelled_singlets = 0;   ///< faces removed at vertices of valence 1
-  int merged_doublets = 0;      ///< pairs of faces merged at vertices of valence 2
+  int cancelled_singlets = 0;   ///< quads removed at inner vertices of valence 1
+  int merged_doublets = 0;      ///< pairs of quads merged at inner vertices of valence 2
+  int inset_quads = 0;          ///< quads with a ring of four put around them where features forbid the two above
+  int restarred_edges = 0;      ///< double edges replaced by three quads around a new vertex
   int split_polychords = 0;     ///< dual strips doubled to make room
-  int collapsed_polychords = 0;
 };
 
-/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes valence 1 and 2, then splits
-/// polychords through double edges, self-adjacent faces and loops shorter than three edges until none is left. Topology,
-/// feature chains and corners stay.
+/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes inner valences 1 and 2, then double
+/// edges, edges that are loops and border loops shorter than four, by splitting polychords or, where a strip would be
+/// long, by a local change. Topology, feature chains and corners stay.
 /// \throws InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
 ComplexRepairReport repair_complex(QuadComplex& complex);
 
