@@ -29,8 +29,8 @@ from hybrid_quad.core.mesh_io import write_mesh  # noqa: E402
 from hybrid_quad.core.remesh import remesh_with_options  # noqa: E402
 from hybrid_quad.core.snapshots import Snapshot  # noqa: E402
 
-SURFACE = (0.62, 0.70, 0.80)
-INPUT = (0.78, 0.76, 0.72)
+SURFACE = (0.36, 0.50, 0.66)
+INPUT = (0.56, 0.54, 0.50)
 LINES = (0.03, 0.04, 0.06)
 FEATURES = (0.80, 0.10, 0.08)
 FEWER = (0.95, 0.42, 0.05)  # vertices with three quads
@@ -196,7 +196,7 @@ class Stage:
         self._scene.world = bpy.data.worlds.new("Demo")
         self._scene.world.use_nodes = True
         self._light_the_background()
-        self._add_sun((math.radians(48), 0.0, math.radians(28)), 2.2)
+        self._add_sun((math.radians(48), 0.0, math.radians(28)), 2.0)
         self._add_camera(points)
 
     def clear(self) -> None:
@@ -271,7 +271,7 @@ class Stage:
         seen, light = nodes.new("ShaderNodeBackground"), nodes.new("ShaderNodeBackground")
         seen.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
         light.inputs["Color"].default_value = (0.9, 0.95, 1.0, 1.0)
-        light.inputs["Strength"].default_value = 0.55
+        light.inputs["Strength"].default_value = 0.45
         links.new(nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"], mix.inputs[0])
         links.new(light.outputs[0], mix.inputs[1])
         links.new(seen.outputs[0], mix.inputs[2])
