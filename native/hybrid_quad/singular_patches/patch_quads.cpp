@@ -85,7 +85,6 @@ void check_shapes(const PatchQuads& quads, const QuadComplex& c, std::vector<std
   }
   for (std::size_t v = 0; v < valence.size(); ++v) {
     if (!border[v] && valence[v] < 3) found.push_back("inner vertex " + std::to_string(v) + " has " + std::to_string(valence[v]) + " faces");
-    if ((quads.node[v] >= 0) != (border[v] != 0)) found.push_back("vertex " + std::to_string(v) + ": nodes and border disagree");
   }
   for (std::size_t q = 0; q < quads.quads.size(); ++q) {
     std::array<int, 4> v = quads.quads[q];
@@ -101,7 +100,7 @@ void check_shapes(const PatchQuads& quads, const QuadComplex& c, std::vector<std
 
 }  // namespace
 
-std::vector<std::string> violations_of(const PatchQuads& quads, const PatchSurface& patch) {
+std::vector<std::string> structural_violations_of(const PatchQuads& quads, const PatchSurface& patch) {
   const std::size_t darts = 4 * quads.quads.size();
   if (quads.opposite.size() != darts || quads.arc.size() != darts || quads.node.size() != quads.positions.size())
     return {"arrays differ in length"};
@@ -110,13 +109,23 @@ std::vector<std::string> violations_of(const PatchQuads& quads, const PatchSurfa
   std::vector<std::string> found = violations_of(c);
   if (!found.empty()) return found;
 
-  for (std::size_t d = 0; d < darts; ++d)
+  std::vector<char> on_border(c.positions.size(), 0);
+  for (std::size_t d = 0; d < darts; ++d) {
+    if (quads.opposite[d] < 0) on_border[c.vertex[d]] = 1;
     if ((quads.opposite[d] < 0) != (quads.arc[d] >= 0)) found.push_back("dart " + std::to_string(d) + ": arcs and border disagree");
+  }
+  for (std::size_t v = 0; v < on_border.size(); ++v)
+    if ((quads.node[v] >= 0) != (on_border[v] != 0)) found.push_back("vertex " + std::to_string(v) + ": nodes and border disagree");
   if (arcs_of(patch) != arcs_of(quads, c)) found.push_back("the border is not the patch's");
   const int chi = euler_characteristic(c), wanted = patch.mesh.euler_characteristic();
   if (chi != wanted) found.push_back("Euler characteristic " + std::to_string(chi) + ", not the patch's " + std::to_string(wanted));
   if (piece_count(quads.opposite, 4) != piece_count(patch.mesh.opposites(), 3)) found.push_back("not as many pieces as the patch");
-  check_shapes(quads, c, found);
+  return found;
+}
+
+std::vector<std::string> violations_of(const PatchQuads& quads, const PatchSurface& patch) {
+  std::vector<std::string> found = structural_violations_of(quads, patch);
+  if (found.empty()) check_shapes(quads, as_complex(quads), found);
   return found;
 }
 

@@ -43,4 +43,8 @@ PatchQuads combinatorial_fill(const PatchSurface& patch, const RunContext& conte
 /// two quads with two common edges.
 std::vector<std::string> violations_of(const PatchQuads& quads, const PatchSurface& patch);
 
+/// The part of violations_of that repair_complex does not mend once the patch is in its place: gluing, border, topology.
+/// What it leaves out are shapes: inner valences below 3, quads that repeat a vertex or share two edges.
+std::vector<std::string> structural_violations_of(const PatchQuads& quads, const PatchSurface& patch);
+
 }  // namespace hybrid_quad
