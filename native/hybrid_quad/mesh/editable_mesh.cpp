@@ -27,14 +27,17 @@ void EditableMesh::glue(int h, int o, int curve) {
   }
 }
 
-/// Makes the fan of from(h) start where its boundary, if any, begins.
-void EditableMesh::update_outgoing(int h) {
+/// Makes the fan of from(h) start where its boundary, if any, begins. An inner vertex whose start is still one of its
+/// half-edges is left as it is, which spares a walk around vertices of high valence.
+void EditableMesh::update_outgoing(int h, bool may_open) {
+  const int v = origin_[h], old = outgoing_[v];
+  if (old >= 0 && origin_[old] == v && (opposite_[old] < 0 || !may_open)) return;
   int first = h;
   while (opposite_[first] >= 0) {
     first = next(opposite_[first]);
     if (first == h) break;
   }
-  outgoing_[origin_[h]] = first;
+  outgoing_[v] = first;
 }
 
 int EditableMesh::split_edge(int h, const Vector3& p) {
@@ -76,9 +79,23 @@ int EditableMesh::split_edge(int h, const Vector3& p) {
 }
 
 bool EditableMesh::are_neighbours(int v, int w) const {
-  bool found = false;
-  visit_outgoing(v, [&](int h) { found |= to(h) == w || apex(h) == w; });
-  return found;
+  // Both fans in step: the search ends with the smaller one.
+  const int start_v = outgoing_[v], start_w = outgoing_[w];
+  for (int h = start_v, k = start_w;;) {
+    if (to(h) == w || apex(h) == w || to(k) == v || apex(k) == v) return true;
+    h = rotate_ccw(h);
+    k = rotate_ccw(k);
+    if (h < 0 || k < 0 || h == start_v || k == start_w) return false;
+  }
+}
+
+bool EditableMesh::has_more_faces(int v, int count) const {
+  int h = outgoing_[v];
+  for (; count > 0; --count) {
+    h = rotate_ccw(h);
+    if (h < 0 || h == outgoing_[v]) return false;
+  }
+  return true;
 }
 
 bool EditableMesh::can_flip(int h) const {
@@ -86,7 +103,7 @@ bool EditableMesh::can_flip(int h) const {
   if (o < 0 || curve_[h] >= 0) return false;
   const int c = apex(h), d = apex(o), a = from(h), b = to(h);
   if (c == d || a == b || c == a || c == b || d == a || d == b) return false;
-  const auto keeps_enough = [this](int v) { return valence(v) > (is_boundary_vertex(v) ? 1 : 3); };
+  const auto keeps_enough = [this](int v) { return has_more_faces(v, is_boundary_vertex(v) ? 1 : 3); };
   return keeps_enough(a) && keeps_enough(b) && !are_neighbours(c, d);
 }
 
@@ -112,8 +129,8 @@ bool EditableMesh::can_collapse(int h) const {
   if (o >= 0 && is_boundary_vertex(a) && is_boundary_vertex(b)) return false;
   const auto has_sides = [this](int k) { return opposite_[next(k)] >= 0 || opposite_[previous(k)] >= 0; };
   if (!has_sides(h) || (o >= 0 && !has_sides(o))) return false;
-  if (!is_boundary_vertex(c) && valence(c) <= 3) return false;
-  if (d >= 0 && !is_boundary_vertex(d) && valence(d) <= 3) return false;
+  if (!is_boundary_vertex(c) && !has_more_faces(c, 3)) return false;
+  if (d >= 0 && !is_boundary_vertex(d) && !has_more_faces(d, 3)) return false;
 
   // Each end's neighbours: only b, c, d may be seen from both.
   int common = 0, edges_ab = 0;
@@ -149,6 +166,7 @@ bool EditableMesh::can_collapse(int h) const {
 void EditableMesh::collapse(int h) {
   const int a = from(h), b = to(h), o = opposite_[h];
   const int start = outgoing_[a];
+  const bool opens = opposite_[start] < 0;
   int k = start;
   do {
     origin_[k] = b;
@@ -173,7 +191,7 @@ void EditableMesh::collapse(int h) {
       for (const int dead : {side, next(side), previous(side)})
         origin_[dead] = opposite_[dead] = -1;
   outgoing_[a] = -1;
-  for (int i = 0; i < count; ++i) update_outgoing(touched[i]);
+  for (int i = 0; i < count; ++i) update_outgoing(touched[i], opens);
 }
 
 EditableMesh::Compacted EditableMesh::compacted() const {

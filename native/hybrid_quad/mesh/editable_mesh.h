@@ -74,7 +74,8 @@ class EditableMesh {
 
  private:
   void glue(int h, int o, int curve);
-  void update_outgoing(int h);
+  void update_outgoing(int h, bool may_open = false);
+  bool has_more_faces(int v, int count) const;
 
   std::vector<Vector3> positions_;
   std::vector<int> origin_, opposite_, curve_, region_, outgoing_;

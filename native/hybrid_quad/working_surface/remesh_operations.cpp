@@ -105,7 +105,13 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
   const double target = vertex_[a].target;
   const double too_long = 4.0 / 3 * options_.edge_fraction * target;
   const bool on_curve = vertex_[a].on_feature;
-  const Vector3 fan = fan_normal(a);
+  const auto region_normal = [&](int region) {
+    Vector3 n = Vector3::Zero();
+    mesh_.visit_outgoing(a, [&](int k) {
+      if (mesh_.region(k / 3) == region) n += mesh_.area_normal(k / 3);
+    });
+    return n;
+  };
   bool keeps = true, turns = false;
   double nearest2 = std::numeric_limits<double>::infinity(), worst_before = 1;
   mesh_.visit_outgoing(a, [&](int k) {
@@ -118,7 +124,7 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const Vector3 before = (x - p).cross(y - p), after = (x - q).cross(y - q);
     const double size_before = before.norm(), size_after = after.norm();
     const bool thin = !(size_before > kThin * target * std::sqrt(longest_side2(p, x, y)));
-    const Vector3& reference = thin ? fan : before;
+    const Vector3 reference = thin ? region_normal(mesh_.region(f)) : before;
     const double new_shape = shape(q, x, y);
     turns |= after.dot(reference) < kSameCosine * size_after * reference.norm();
     keeps = size_after > 0 && after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
