@@ -58,11 +58,6 @@ class EditableMesh {
       h = rotate_ccw(h);
     } while (h >= 0 && h != start);
   }
-  int valence(int v) const {  ///< faces about v
-    int n = 0;
-    visit_outgoing(v, [&n](int) { ++n; });
-    return n;
-  }
   bool are_neighbours(int v, int w) const;
 
   struct Compacted {

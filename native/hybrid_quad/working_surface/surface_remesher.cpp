@@ -118,29 +118,24 @@ void SurfaceRemesher::split_long_edges(double longest) {
   }
 }
 
-/// Splits feature edges into equal parts no longer than the limit, and curves with too few edges once more.
+/// Splits feature edges into equal parts no longer than the limit, and curves with too few edges once more: by halves, with
+/// flips in between, so that no vertex collects all parts of an edge.
 void SurfaceRemesher::split_feature_edges() {
-  for (int h = 0; h < mesh_.halfedge_slots(); ++h) {
-    if (!stands_for_edge(h) || !is_feature(h)) continue;
-    checkpoint();
-    const double limit = options_.feature_edge_limit * edge_target(h);
-    const int c = mesh_.curve(h);
-    const int needed = curve_is_loop_[c] ? 4 : 2;
-    const double length = mesh_.edge_vector(h).norm();
-    int parts = static_cast<int>(std::min(1e6, std::ceil(length / limit * (1 - 1e-9))));
-    if (curve_edges_[c] < needed) parts = std::max(parts, needed - curve_edges_[c] + 1);
-    // h shrinks to its first part; the rest is the new edge that leaves its end.
-    for (int k = h; parts > 1; --parts) {
-      const int m = split(k, 1.0 / parts);
-      int rest = -1;
-      mesh_.visit_outgoing(m, [&](int g) {
-        if (mesh_.curve(g) == c && mesh_.to(g) != mesh_.from(k)) rest = g;
-        const int p = EditableMesh::previous(g);
-        if (mesh_.opposite(p) < 0 && mesh_.curve(p) == c && mesh_.from(p) != mesh_.from(k)) rest = p;
-      });
-      if (rest < 0 || mesh_.from(rest) != m) break;
-      k = rest;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int h = 0, end = mesh_.halfedge_slots(); h < end; ++h) {
+      if (!stands_for_edge(h) || !is_feature(h)) continue;
+      const int c = mesh_.curve(h);
+      const double limit = options_.feature_edge_limit * edge_target(h);
+      const double length = mesh_.edge_vector(h).norm();
+      int parts = static_cast<int>(std::min(1e6, std::ceil(length / limit * (1 - 1e-9))));
+      if (curve_edges_[c] < (curve_is_loop_[c] ? 4 : 2)) parts = std::max(parts, 2);
+      if (parts < 2) continue;
+      checkpoint();
+      split(h, static_cast<double>(parts / 2) / parts);
+      changed = true;
     }
+    if (changed) flip_edges();
   }
 }
 
