@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostPolygonCorners = 16;  // fill_disk grows with a high power of it
 constexpr double kWorstCostOfAQuad = 3.0;        // of a directly filled disk; beyond it lies a fold or a huge quad
+constexpr double kMostQuadsForShape = 8.0;       // times the wanted number: then size goes before shape
 
 /// Unit normal of the surface at vertex v.
 Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
@@ -132,7 +133,10 @@ PatchQuads combinatorial_fill(const PatchSurface& patch, const RunContext& conte
   // Three quads a triangle of edge length l: each has 0.14 l^2. Collapses up to a length leave edges of 1 to 2 times it.
   const double h = patch.target_length > 0 ? patch.target_length : 4 * patch.mesh.mean_edge_length();
   CoarseTriangles triangles(patch, border);
-  triangles.coarsen(1.5 * h, context);
+  triangles.coarsen(1.5 * h, true, context);
+  const double wanted = patch.mesh.total_area() / (h * h);
+  if (3 * triangles.alive_count() > kMostQuadsForShape * (wanted + static_cast<double>(triangles.minima().size())))
+    triangles.coarsen(h, false, context);
   triangles.flip_towards_six();
   triangles.smooth(surface, 3);
   triangles.flip_towards_six();

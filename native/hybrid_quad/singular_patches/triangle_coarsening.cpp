@@ -9,6 +9,11 @@ namespace hybrid_quad {
 namespace {
 constexpr auto next = TriangleMesh::next;
 constexpr auto previous = TriangleMesh::previous;
+
+constexpr double kLeastCosine = 0.3;  // between a face and the surface at its corners
+constexpr double kNoArea = 1e-3;      // twice a face's area, relative to its longest side squared
+
+Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c) { return (b - a).cross(c - a); }
 }  // namespace
 
 CoarseTriangles::CoarseTriangles(const PatchSurface& patch, const PatchBorder& border) {
@@ -21,6 +26,10 @@ CoarseTriangles::CoarseTriangles(const PatchSurface& patch, const PatchBorder& b
   faces_at_.assign(positions_.size(), 0);
   for (const int v : vertex_) ++faces_at_[v];
   border_vertex_.assign(positions_.size(), -1);
+  normals_.assign(positions_.size(), Vector3::Zero());
+  for (int f = 0; f < mesh.face_count(); ++f)
+    for (const int v : mesh.face(f)) normals_[v] += mesh.area_normal(f);
+  for (Vector3& n : normals_) n.normalize();
   for (const auto& loop : border) add_collar(patch, loop);
 }
 
@@ -48,6 +57,7 @@ void CoarseTriangles::add_collar(const PatchSurface& patch, const std::vector<Pa
   for (int k = 0; k < arcs; k += 2) {
     const int maximum = loop[(first + k) % arcs].from;
     positions_.push_back(mesh.position(maximum));
+    normals_.push_back(Vector3(normals_[maximum]));
     border_vertex_.push_back(maximum);
     faces_at_.push_back(0);
   }
@@ -109,16 +119,26 @@ bool CoarseTriangles::can_collapse(int h) {
   return joined == 1;  // another edge between them would become a loop
 }
 
-/// No face turns over and no edge gets too long. Collar faces have no area at first and may become anything.
+bool CoarseTriangles::faces_outwards(const std::array<int, 3>& corners, const std::array<Vector3, 3>& p) const {
+  const Vector3 normal = area_normal(p[0], p[1], p[2]);
+  const double area = normal.norm();
+  const double longest = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+  if (!(area > kNoArea * longest)) return true;
+  for (const int v : corners)
+    if (normal.dot(normals_[v]) < kLeastCosine * area) return false;
+  return true;
+}
+
+/// No face turns away from the surface and no edge gets too long.
 bool CoarseTriangles::keeps_shape(int h, double longest) {
   const Vector3 goal = positions_[to(h)];
+  const bool first_step = !(edge_length(h) > 0);  // out of the collar
   fan(h, fan_);
   for (std::size_t i = 1; i < fan_.size(); ++i) {
-    const Vector3 &p = positions_[from(fan_[i])], &q = positions_[to(fan_[i])], &r = positions_[from(previous(fan_[i]))];
-    if (edge_length(h) > 0 && (q - goal).norm() > longest) return false;
+    const int q = to(fan_[i]), r = from(previous(fan_[i]));
+    if (!first_step && (positions_[q] - goal).norm() > longest) return false;
     if (i + 1 == fan_.size()) continue;  // goes with the edge
-    const Vector3 before = area_normal(p, q, r), now = area_normal(goal, q, r);
-    if (before.norm() > 1e-3 * (q - r).squaredNorm() && now.dot(before) < 0.3 * now.norm() * before.norm()) return false;
+    if (!faces_outwards({to(h), q, r}, {goal, positions_[q], positions_[r]})) return false;
   }
   return true;
 }
@@ -143,7 +163,7 @@ void CoarseTriangles::collapse(int h, std::vector<int>& touched) {
   }
 }
 
-void CoarseTriangles::coarsen(double length, const RunContext& context) {
+void CoarseTriangles::coarsen(double length, bool keep_shape, const RunContext& context) {
   using Entry = std::tuple<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
   const auto push = [&](int h) {
@@ -156,7 +176,8 @@ void CoarseTriangles::coarsen(double length, const RunContext& context) {
     if (steps % 4096 == 0) context.checkpoint();
     const auto [expected, h] = queue.top();
     queue.pop();
-    if (!alive_[h / 3] || edge_length(h) != expected || !can_collapse(h) || !keeps_shape(h, 2 * length)) continue;
+    if (!alive_[h / 3] || edge_length(h) != expected || !can_collapse(h)) continue;
+    if (keep_shape && !keeps_shape(h, 2 * length)) continue;
     collapse(h, touched);
     for (const int e : touched)
       if (alive_[e / 3]) {
@@ -182,7 +203,8 @@ bool CoarseTriangles::can_flip(int h) const {
   const Vector3 &pa = positions_[a], &pb = positions_[b], &pc = positions_[c], &pd = positions_[d];
   const Vector3 old = area_normal(pa, pb, pc) + area_normal(pb, pa, pd);
   const double least = 0.1 * old.squaredNorm();
-  return area_normal(pc, pa, pd).dot(old) > least && area_normal(pd, pb, pc).dot(old) > least;
+  return area_normal(pc, pa, pd).dot(old) > least && area_normal(pd, pb, pc).dot(old) > least &&
+         faces_outwards({c, a, d}, {pc, pa, pd}) && faces_outwards({d, b, c}, {pd, pb, pc});
 }
 
 void CoarseTriangles::flip(int h) {
@@ -217,19 +239,28 @@ void CoarseTriangles::flip_towards_six() {
 }
 
 void CoarseTriangles::smooth(const SurfaceIndex& surface, int sweeps) {
-  std::vector<Vector3> sum(positions_.size());
-  std::vector<int> count(positions_.size());
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    std::fill(sum.begin(), sum.end(), Vector3::Zero());
-    std::fill(count.begin(), count.end(), 0);
-    for (int h = 0; h < static_cast<int>(vertex_.size()); ++h) {
-      if (!alive_[h / 3]) continue;
-      sum[from(h)] += positions_[to(h)];
-      ++count[from(h)];
+  std::vector<int> outgoing(positions_.size(), -1);
+  for (int h = 0; h < static_cast<int>(vertex_.size()); ++h)
+    if (alive_[h / 3]) outgoing[from(h)] = h;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
+      if (outgoing[v] < 0 || on_border(v)) continue;
+      fan(outgoing[v], fan_);
+      Vector3 mean = Vector3::Zero();
+      for (const int h : fan_) mean += positions_[to(h)] / static_cast<double>(fan_.size());
+      const SurfacePoint goal = surface.nearest(mean);
+      const Vector3 old_normal = normals_[v];
+      normals_[v] = surface.mesh().normal(goal.face);
+      bool allowed = true;
+      for (const int h : fan_) {
+        const int q = to(h), r = from(previous(h));
+        allowed = allowed && faces_outwards({v, q, r}, {goal.position, positions_[q], positions_[r]});
+      }
+      if (allowed)
+        positions_[v] = goal.position;
+      else
+        normals_[v] = old_normal;
     }
-    for (std::size_t v = 0; v < positions_.size(); ++v)
-      if (count[v] > 0 && !on_border(static_cast<int>(v))) positions_[v] = surface.nearest(sum[v] / count[v]).position;
-  }
 }
 
 void CoarseTriangles::raise_low_valences() {
@@ -240,6 +271,7 @@ void CoarseTriangles::raise_low_valences() {
     const std::array<int, 3> v{vertex_[f], vertex_[f + 1], vertex_[f + 2]};
     const Vector3 middle = (positions_[v[0]] + positions_[v[1]] + positions_[v[2]]) / 3.0;
     positions_.push_back(middle);
+    normals_.push_back(Vector3(normals_[v[0]]));
     border_vertex_.push_back(-1);
     faces_at_.push_back(1);
     vertex_[f + 2] = center;
@@ -266,6 +298,7 @@ void CoarseTriangles::compact() {
     if (faces_at_[v] == 0) continue;
     new_vertex[v] = vertices++;
     positions_[new_vertex[v]] = Vector3(positions_[v]);
+    normals_[new_vertex[v]] = Vector3(normals_[v]);
     border_vertex_[new_vertex[v]] = border_vertex_[v];
     faces_at_[new_vertex[v]] = faces_at_[v];
   }
@@ -278,6 +311,7 @@ void CoarseTriangles::compact() {
   }
   for (std::vector<int>* sides : {&vertex_, &opposite_, &minimum_}) sides->resize(3 * faces);
   positions_.resize(vertices);
+  normals_.resize(vertices);
   border_vertex_.resize(vertices);
   faces_at_.resize(vertices);
   alive_.assign(faces, 1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "hybrid_quad/mesh/surface_index.h"
@@ -15,17 +16,19 @@ class CoarseTriangles {
   /// border maxima as its only vertices. So the border is right from the start and all vertices of the patch are free.
   CoarseTriangles(const PatchSurface& patch, const PatchBorder& border);
 
-  /// Collapses edges shorter than `length`, shortest first.
-  void coarsen(double length, const RunContext& context);
+  /// Collapses edges shorter than `length`, shortest first. \param keep_shape  only where no face turns away from the
+  /// surface; without it, crumpled surfaces get coarse too
+  void coarsen(double length, bool keep_shape, const RunContext& context);
   /// Flips edges towards six faces at every vertex.
   void flip_towards_six();
-  /// Moves inner vertices to the mean of their neighbours, on the surface.
+  /// Moves inner vertices to the mean of their neighbours, on the surface, where no face turns over.
   void smooth(const SurfaceIndex& surface, int sweeps);
   /// Gives inner vertices with fewer than three faces more of them.
   void raise_low_valences();
-  /// Drops what is gone.
+  /// Drops what is gone; face_count() counts it before.
   void compact();
 
+  int alive_count() const { return static_cast<int>(std::count(alive_.begin(), alive_.end(), 1)); }
   int face_count() const { return static_cast<int>(vertex_.size()) / 3; }
   int from(int h) const { return vertex_[h]; }
   int to(int h) const { return vertex_[TriangleMesh::next(h)]; }
@@ -49,9 +52,10 @@ class CoarseTriangles {
   void glue(int g, int h);
   bool on_border(int v) const { return border_vertex_[v] >= 0; }
   double edge_length(int h) const { return (positions_[to(h)] - positions_[from(h)]).norm(); }
-  Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c) const { return (b - a).cross(c - a); }
   /// Outgoing half-edges of an inner vertex, counterclockwise from h.
   void fan(int h, std::vector<int>& out) const;
+  /// Whether a face lies the way the surface does at its corners; faces with hardly any area (collars) may lie any way.
+  bool faces_outwards(const std::array<int, 3>& corners, const std::array<Vector3, 3>& positions) const;
   bool can_collapse(int h);
   bool keeps_shape(int h, double longest);
   void collapse(int h, std::vector<int>& touched);
@@ -63,6 +67,7 @@ class CoarseTriangles {
   std::vector<int> faces_at_;           // #V
   std::vector<int> border_vertex_;      // #V
   std::vector<Vector3> positions_;
+  std::vector<Vector3> normals_;        // #V: of the surface
   std::vector<BorderMinimum> minima_;
   std::vector<int> fan_;
 };
