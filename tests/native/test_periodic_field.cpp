@@ -10,19 +10,26 @@
 namespace hybrid_quad {
 namespace {
 
-PhasePair phases_at(double u, double v) { return {std::polar(1.0, M_PI * (u + v)), std::polar(1.0, M_PI * (u - v))}; }
+PhasePair phases_at(double u, double v) {
+  return {std::polar(1.0, M_PI * (u + v)), std::polar(1.0, M_PI * (u - v))};
+}
 
 void expect_near(const PhasePair& x, const PhasePair& y, double tolerance = 1e-12) {
   EXPECT_NEAR(std::abs(x.a - y.a), 0, tolerance);
   EXPECT_NEAR(std::abs(x.b - y.b), 0, tolerance);
 }
 
-double inner(const PhasePair& x, const PhasePair& y) { return (x.a * std::conj(y.a)).real() + (x.b * std::conj(y.b)).real(); }
+double inner(const PhasePair& x, const PhasePair& y) {
+  return (x.a * std::conj(y.a)).real() + (x.b * std::conj(y.b)).real();
+}
 
-PhasePair some_pair(int i) { return {std::polar(1 + 0.3 * std::sin(i), 1.7 * i), std::polar(1.2 + 0.1 * std::cos(3.0 * i), 0.9 * i)}; }
+PhasePair some_pair(int i) {
+  return {std::polar(1 + 0.3 * std::sin(i), 1.7 * i), std::polar(1.2 + 0.1 * std::cos(3.0 * i), 0.9 * i)};
+}
 PhaseTransport some_transport(int i) { return {i & 3, some_pair(i + 5).a, some_pair(i + 9).b}; }
 
-PeriodicField solved(const WorkingSurface& surface, const FrameField& frames, PeriodicSolver solver = PeriodicSolver::kMultilevel) {
+PeriodicField solved(const WorkingSurface& surface, const FrameField& frames,
+                     PeriodicSolver solver = PeriodicSolver::kMultilevel) {
   PeriodicFieldOptions options;
   options.solver = solver;
   return solve_periodic_field(surface, frames, options, RunContext{});
@@ -66,11 +73,13 @@ TEST(PhaseGraph, CoarseEnergyIsTheFineEnergyOfLiftedValues) {
   const WorkingSurface surface = test::surface_of(test::icosphere(3), 0.2);
   const FrameField frames = test::smooth_frames(surface, 0.2);
   const PeriodicField field = solved(surface, frames);
-  const PhaseGraph fine = build_phase_graph(surface.mesh, measure_edges(surface, frames), field.corner_turn, field.constraint, 20);
+  const PhaseGraph fine = build_phase_graph(surface.mesh, measure_edges(surface, frames), field.corner_turn,
+                                            field.constraint, 20);
   const PhaseAggregation step = coarsen(fine);
   std::vector<PhasePair> z(step.coarse.node_count()), lifted(fine.node_count());
   for (int i = 0; i < step.coarse.node_count(); ++i) z[i] = phases_at(0.3 * i, 0.7 * i);
-  for (int i = 0; i < fine.node_count(); ++i) lifted[i] = transported(step.prolongation[i], z[step.aggregate[i]]);
+  for (int i = 0; i < fine.node_count(); ++i)
+    lifted[i] = transported(step.prolongation[i], z[step.aggregate[i]]);
   // Edges that fall inside an aggregate with a turn are dropped on the coarse level: there are few, at cones.
   EXPECT_NEAR(phase_energy(step.coarse, z), phase_energy(fine, lifted), 0.02 * phase_energy(fine, lifted));
 }
@@ -106,13 +115,16 @@ TEST(PeriodicField, EnergyIsTheSameInEveryGauge) {
     const int turn = turns[surface.mesh.outgoing(v) / 3];
     psi[v] = turned(psi[v], turn);
     if (turn & 1) {
-      if (constraint[v] == GridConstraint::kIsolineU) constraint[v] = GridConstraint::kIsolineV;
-      else if (constraint[v] == GridConstraint::kIsolineV) constraint[v] = GridConstraint::kIsolineU;
+      if (constraint[v] == GridConstraint::kIsolineU)
+        constraint[v] = GridConstraint::kIsolineV;
+      else if (constraint[v] == GridConstraint::kIsolineV)
+        constraint[v] = GridConstraint::kIsolineU;
     }
   }
   const PeriodicField solved_there = solved(surface, other);
   EXPECT_EQ(solved_there.constraint, constraint);
-  const PhaseGraph graph = build_phase_graph(surface.mesh, measure_edges(surface, other), solved_there.corner_turn, constraint, 20);
+  const PhaseGraph graph = build_phase_graph(surface.mesh, measure_edges(surface, other),
+                                             solved_there.corner_turn, constraint, 20);
   EXPECT_NEAR(phase_energy(graph, psi), field.energy, 1e-9);
 }
 
@@ -131,12 +143,15 @@ TEST(PeriodicField, BoxHasItsCornersPinnedAndItsEdgesOnIsolines) {
 }
 
 TEST(PeriodicField, MultilevelIsAsLowAsGaussNewton) {
-  const std::vector<std::pair<TriangleMesh, double>> cases = {
-      {test::icosphere(3), 0.25}, {test::torus(40, 20), 0.2}, {test::box(8), 0.21}, {test::capped_cylinder(28, 14), 0.27}};
+  const std::vector<std::pair<TriangleMesh, double>> cases = {{test::icosphere(3), 0.25},
+                                                              {test::torus(40, 20), 0.2},
+                                                              {test::box(8), 0.21},
+                                                              {test::capped_cylinder(28, 14), 0.27}};
   for (const auto& [mesh, h] : cases) {
     const WorkingSurface surface = test::surface_of(mesh, h);
     const FrameField frames = test::smooth_frames(surface, h);
-    const PeriodicField quick = solved(surface, frames), reference = solved(surface, frames, PeriodicSolver::kEigenGaussNewton);
+    const PeriodicField quick = solved(surface, frames),
+                        reference = solved(surface, frames, PeriodicSolver::kEigenGaussNewton);
     expect_valid(quick, surface, frames);
     expect_valid(reference, surface, frames);
     EXPECT_LE(quick.energy, 1.1 * reference.energy + 1e-9);
@@ -147,7 +162,8 @@ TEST(PeriodicField, SameInputSameBits) {
   const WorkingSurface surface = test::surface_of(test::icosphere(3), 0.2);
   const FrameField frames = test::smooth_frames(surface, 0.2);
   const PeriodicField x = solved(surface, frames), y = solved(surface, frames);
-  for (std::size_t v = 0; v < x.psi.size(); ++v) ASSERT_TRUE(x.psi[v].a == y.psi[v].a && x.psi[v].b == y.psi[v].b);
+  for (std::size_t v = 0; v < x.psi.size(); ++v)
+    ASSERT_TRUE(x.psi[v].a == y.psi[v].a && x.psi[v].b == y.psi[v].b);
 }
 
 TEST(PeriodicField, StopsWhenAsked) {

@@ -54,7 +54,9 @@ TEST(SmallestEigenpair, TakesASingularMatrix) {
   EXPECT_NEAR(pair.vector.maxCoeff(), pair.vector.minCoeff(), 1e-6);
 }
 
-TEST(SmallestEigenpair, RefusesNothing) { EXPECT_THROW(smallest_eigenpair(Sparse(0, 0), EigenOptions{}), InternalError); }
+TEST(SmallestEigenpair, RefusesNothing) {
+  EXPECT_THROW(smallest_eigenpair(Sparse(0, 0), EigenOptions{}), InternalError);
+}
 
 }  // namespace
 }  // namespace hybrid_quad

@@ -50,7 +50,8 @@ TEST(SpanningParameterization, AlignedFlatGridIsItsOwnGrid) {
   EXPECT_DOUBLE_EQ(grid_area(p), 20);
   for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
     const Vector2 measured = frames.grid_vector(surface.mesh, h);
-    for (int c = 0; c < 2; ++c) EXPECT_NEAR(static_cast<double>(p.halfedge_uv[h][c]) / kGridUnit, measured[c], 1e-4);
+    for (int c = 0; c < 2; ++c)
+      EXPECT_NEAR(static_cast<double>(p.halfedge_uv[h][c]) / kGridUnit, measured[c], 1e-4);
   }
 }
 
@@ -85,7 +86,8 @@ TEST(SpanningParameterization, TorusClosesAndCountsWholeQuads) {
 }
 
 TEST(SpanningParameterization, ChargesOfAClosedFlatBundleCancel) {
-  // Orthonormal frames on a torus are not integrable: dislocations come, but where no turn is left their sum is zero.
+  // Orthonormal frames on a torus are not integrable: dislocations come, but where no turn is left their sum
+  // is zero.
   const WorkingSurface surface = test::surface_of(test::torus(60, 40, 1, 0.6), 0.1, 181);
   FrameField frames = test::torus_frames(surface, 40, 24);
   for (int f = 0; f < surface.mesh.face_count(); ++f) {
@@ -130,7 +132,8 @@ TEST(SpanningParameterization, ConesTakeDislocationsIn) {
     const SpanningParameterization p = solved(surface, frames).param;
     EXPECT_EQ(p.dislocations_left, 0);
     EXPECT_LT(p.folded_faces, 0.01 * surface.mesh.face_count());
-    for (int v = 0; v < surface.mesh.vertex_count(); ++v) EXPECT_EQ(p.is_grid_vertex[v] != 0, frames.cone_index[v] != 0);
+    for (int v = 0; v < surface.mesh.vertex_count(); ++v)
+      EXPECT_EQ(p.is_grid_vertex[v] != 0, frames.cone_index[v] != 0);
   }
 }
 
@@ -154,7 +157,9 @@ TEST(SpanningParameterization, CheckSeesEveryKindOfDamage) {
   EXPECT_TRUE(broken([](auto& p) { ++p.halfedge_uv[5][0]; }));
   EXPECT_TRUE(broken([](auto& p) { ++p.corner_uv[10][1]; }));
   EXPECT_TRUE(broken([](auto& p) { p.charge[3][0] = 1; }));
-  EXPECT_TRUE(broken([](auto& p) { for (int i = 9; i < 12; ++i) p.corner_uv[i][0] += kGridUnit; }));
+  EXPECT_TRUE(broken([](auto& p) {
+    for (int i = 9; i < 12; ++i) p.corner_uv[i][0] += kGridUnit;
+  }));
   EXPECT_TRUE(broken([&](auto& p) {
     for (int v = 0; v < surface.mesh.vertex_count(); ++v)
       if (surface.features.is_corner[v]) p.is_grid_vertex[v] = 0;

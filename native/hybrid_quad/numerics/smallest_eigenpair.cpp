@@ -25,7 +25,8 @@ class InverseOperator {
     Sparse shifted = lower_;
     for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) -= sigma;
     factor_.compute(shifted);
-    if (factor_.info() != Eigen::Success) throw InternalError("eigenpair", "the shifted matrix cannot be factored");
+    if (factor_.info() != Eigen::Success)
+      throw InternalError("eigenpair", "the shifted matrix cannot be factored");
   }
   void perform_op(const double* x, double* y) const {
     Eigen::Map<Eigen::VectorXd>(y, rows()) = factor_.solve(Eigen::Map<const Eigen::VectorXd>(x, rows()));
@@ -81,9 +82,11 @@ Eigenpair smallest_by_lanczos(const Sparse& lower, double scale, const EigenOpti
 }  // namespace
 
 Eigenpair smallest_eigenpair(const Sparse& lower, const EigenOptions& options) {
-  if (lower.rows() == 0 || lower.rows() != lower.cols()) throw InternalError("eigenpair", "the matrix is empty or not square");
+  if (lower.rows() == 0 || lower.rows() != lower.cols())
+    throw InternalError("eigenpair", "the matrix is empty or not square");
   const double scale = largest_diagonal(lower);
-  Eigenpair pair = lower.rows() <= 8 || !(scale > 0) ? smallest_of_dense(lower) : smallest_by_lanczos(lower, scale, options);
+  Eigenpair pair = lower.rows() <= 8 || !(scale > 0) ? smallest_of_dense(lower)
+                                                     : smallest_by_lanczos(lower, scale, options);
   const Eigen::VectorXd applied = lower.selfadjointView<Eigen::Lower>() * pair.vector;
   const Eigen::VectorXd misfit = applied - pair.value * pair.vector;
   pair.residual = scale > 0 ? misfit.norm() / scale : misfit.norm();

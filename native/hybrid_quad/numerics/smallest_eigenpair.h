@@ -7,15 +7,15 @@ namespace hybrid_quad {
 /// The smallest eigenvalue of a symmetric matrix with its unit eigenvector.
 struct Eigenpair {
   double value = 0;
-  Eigen::VectorXd vector;   ///< unit length
-  double residual = 0;      ///< |A x - value x| / (largest absolute entry of the diagonal)
-  bool converged = false;   ///< the solver's own tolerance was met; else the best vector found
+  Eigen::VectorXd vector;  ///< unit length
+  double residual = 0;     ///< |A x - value x| / (largest absolute entry of the diagonal)
+  bool converged = false;  ///< the solver's own tolerance was met; else the best vector found
 };
 
 struct EigenOptions {
-  double tolerance = 1e-6;   ///< relative, of the inverted spectrum
+  double tolerance = 1e-6;  ///< relative, of the inverted spectrum
   int max_restarts = 100;
-  int basis = 12;            ///< Lanczos vectors kept
+  int basis = 12;  ///< Lanczos vectors kept
 };
 
 /// Shift-invert Lanczos (Spectra, Qiu 2015) about a point just below zero.

@@ -17,7 +17,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 class RelaxedEnergy {
  public:
   RelaxedEnergy(const PhaseGraph& graph, const PhaseMatrix& matrix, double constraint_weight)
-      : graph_(graph), matrix_(matrix), energy_scale_(1 / std::max(graph.total_weight, 1e-300)),
+      : graph_(graph),
+        matrix_(matrix),
+        energy_scale_(1 / std::max(graph.total_weight, 1e-300)),
         penalty_scale_(constraint_weight / std::max(1, graph.node_count())) {}
 
   double value(const Eigen::VectorXd& y) const {
@@ -47,7 +49,8 @@ class RelaxedEnergy {
       const int at = matrix_.offset[i], dimension = matrix_.offset[i + 1] - at;
       for (int c = 0; c < dimension; ++c) {
         gradient[at + c] += penalty_scale_ * slope[c];
-        for (int r = c; r < dimension; ++r) extra.emplace_back(at + r, at + c, penalty_scale_ * curvature(r, c));
+        for (int r = c; r < dimension; ++r)
+          extra.emplace_back(at + r, at + c, penalty_scale_ * curvature(r, c));
       }
     }
     Sparse penalty(lower.rows(), lower.cols());
@@ -63,9 +66,11 @@ class RelaxedEnergy {
 
 }  // namespace
 
-std::vector<PhasePair> solve_gauss_newton_phases(const PhaseGraph& graph, const PeriodicFieldOptions& options, const RunContext& context) {
+std::vector<PhasePair> solve_gauss_newton_phases(const PhaseGraph& graph, const PeriodicFieldOptions& options,
+                                                 const RunContext& context) {
   const PhaseMatrix matrix = assemble_phase_matrix(graph);
-  std::vector<PhasePair> z = phases_of(graph, matrix, smallest_eigenpair(matrix.lower, EigenOptions{}).vector);
+  std::vector<PhasePair> z =
+      phases_of(graph, matrix, smallest_eigenpair(matrix.lower, EigenOptions{}).vector);
   context.checkpoint(0.3);
   for (int i = 0; i < graph.node_count(); ++i) z[i] = projected(z[i], graph.constraint[i]);
   Eigen::VectorXd y = unknowns_of(graph, matrix, z);

@@ -30,14 +30,16 @@ void align_feature_edge(const TriangleMesh& mesh, const FrameField& frames, int 
 
 /// The fewest quad edges that a curve may get: a closed chain of fewer than four is no boundary of quads.
 double fewest_edges(const FeatureCurve& curve) {
-  const bool returns = curve.closed || (!curve.vertices.empty() && curve.vertices.front() == curve.vertices.back());
+  const bool returns =
+      curve.closed || (!curve.vertices.empty() && curve.vertices.front() == curve.vertices.back());
   return returns ? 4.0 : 1.0;
 }
 
 void stretch_short_curves(const TriangleMesh& mesh, const FeatureGraph& features, GridMeasure& measure) {
   std::vector<double> length(features.curves.size(), 0.0);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (measure.axis[h] >= 0 && h > mesh.opposite(h)) length[features.halfedge_curve[h]] += measure.along[h].norm();
+    if (measure.axis[h] >= 0 && h > mesh.opposite(h))
+      length[features.halfedge_curve[h]] += measure.along[h].norm();
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     if (measure.axis[h] < 0) continue;
     const int curve = features.halfedge_curve[h];

@@ -10,8 +10,9 @@ namespace hybrid_quad {
 
 /// How many quads every half-edge measures, and which grid direction the features follow.
 struct GridMeasure {
-  std::vector<Vector2> along;      ///< 3 #F, (du, dv) in the gauge of the half-edge's face
-  std::vector<std::int8_t> axis;   ///< 3 #F: 0 a feature along u, 1 a feature along v (face gauge), -1 no feature
+  std::vector<Vector2> along;  ///< 3 #F, (du, dv) in the gauge of the half-edge's face
+  std::vector<std::int8_t>
+      axis;  ///< 3 #F: 0 a feature along u, 1 a feature along v (face gauge), -1 no feature
 
   /// The two sides' measures averaged, in the gauge of h's face.
   Vector2 average(const TriangleMesh& mesh, const FrameField& frames, int h) const {
@@ -21,15 +22,19 @@ struct GridMeasure {
   }
 };
 
-/// Measures the frames along edges. Feature edges are laid on the nearer of the two grid directions: nothing across,
-/// their whole length along, equal on both sides. Strips between two features get room for one quad, and curves too short to get the edges that a quad mesh needs (one between
-/// two corners, four around a loop) are stretched to that many.
+/// Measures the frames along edges. Feature edges are laid on the nearer of the two grid directions: nothing
+/// across, their whole length along, equal on both sides. Strips between two features get room for one quad,
+/// and curves too short to get the edges that a quad mesh needs (one between two corners, four around a loop)
+/// are stretched to that many.
 GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frames);
 
-/// The vertex gauges: a vertex's values are those of the face of its outgoing(v); corner_turn takes them into the others.
+/// The vertex gauges: a vertex's values are those of the face of its outgoing(v); corner_turn takes them into
+/// the others.
 struct VertexGauges {
-  std::vector<std::uint8_t> corner_turn;  ///< 3 #F: value in the face = turned(value at the vertex, corner_turn[3 f + i])
-  std::vector<std::uint8_t> holonomy;     ///< #V: turn of one counterclockwise trip around the vertex; 0 on the boundary
+  std::vector<std::uint8_t>
+      corner_turn;  ///< 3 #F: value in the face = turned(value at the vertex, corner_turn[3 f + i])
+  std::vector<std::uint8_t>
+      holonomy;  ///< #V: turn of one counterclockwise trip around the vertex; 0 on the boundary
 };
 
 VertexGauges choose_vertex_gauges(const TriangleMesh& mesh, const FrameField& frames);

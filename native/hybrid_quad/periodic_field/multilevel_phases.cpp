@@ -15,8 +15,8 @@ namespace {
 /// Below this many nodes a level is so cheap that it gets five times the sweeps.
 constexpr int kCheapLevel = 5000;
 
-/// Projects; where an eigenvector says nothing (without odd holonomy it may vanish on all a or all b, MATH 2.16) a phase
-/// that depends on the node alone takes its place.
+/// Projects; where an eigenvector says nothing (without odd holonomy it may vanish on all a or all b,
+/// MATH 2.16) a phase that depends on the node alone takes its place.
 void project_all(const PhaseGraph& graph, std::vector<PhasePair>& z) {
   double size = 0;
   for (const PhasePair& p : z) size = std::max({size, std::norm(p.a), std::norm(p.b)});
@@ -27,8 +27,8 @@ void project_all(const PhaseGraph& graph, std::vector<PhasePair>& z) {
   }
 }
 
-/// Diffusion with projection after every step (Merriman, Bence, Osher 1992), the diffusion time shrinking: the eigenvector
-/// is small over whole parts of the surface, and says little there (MATH 6.1).
+/// Diffusion with projection after every step (Merriman, Bence, Osher 1992), the diffusion time shrinking:
+/// the eigenvector is small over whole parts of the surface, and says little there (MATH 6.1).
 void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std::vector<PhasePair>& z) {
   double mean = 0;
   for (int i = 0; i < graph.node_count(); ++i) mean += 0.5 * (graph.weight_a[i] + graph.weight_b[i]);
@@ -47,7 +47,8 @@ void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std
 
 std::vector<PhasePair> solve_coarsest(const PhaseGraph& graph) {
   const PhaseMatrix matrix = assemble_phase_matrix(graph);
-  std::vector<PhasePair> z = phases_of(graph, matrix, smallest_eigenpair(matrix.lower, EigenOptions{}).vector);
+  std::vector<PhasePair> z =
+      phases_of(graph, matrix, smallest_eigenpair(matrix.lower, EigenOptions{}).vector);
   project_all(graph, z);
   diffuse_and_project(graph, matrix, z);
   return z;
@@ -55,7 +56,8 @@ std::vector<PhasePair> solve_coarsest(const PhaseGraph& graph) {
 
 }  // namespace
 
-std::vector<PhasePair> solve_multilevel_phases(PhaseGraph finest, const PeriodicFieldOptions& options, const RunContext& context) {
+std::vector<PhasePair> solve_multilevel_phases(PhaseGraph finest, const PeriodicFieldOptions& options,
+                                               const RunContext& context) {
   std::vector<PhaseGraph> graphs;
   std::vector<PhaseAggregation> lifts;  // without their graphs, which move into `graphs`
   graphs.push_back(std::move(finest));
@@ -79,7 +81,8 @@ std::vector<PhasePair> solve_multilevel_phases(PhaseGraph finest, const Periodic
     if (level < static_cast<int>(lifts.size())) {
       std::vector<PhasePair> lifted(graph.node_count());
       for (int i = 0; i < graph.node_count(); ++i)
-        lifted[i] = projected(transported(lifts[level].prolongation[i], z[lifts[level].aggregate[i]]), graph.constraint[i]);
+        lifted[i] = projected(transported(lifts[level].prolongation[i], z[lifts[level].aggregate[i]]),
+                              graph.constraint[i]);
       z = std::move(lifted);
     }
     const int sweeps = options.sweeps * (graph.node_count() < kCheapLevel ? 5 : 1);

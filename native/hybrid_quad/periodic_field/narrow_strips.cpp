@@ -22,7 +22,8 @@ struct FaceOnWalk {
 /// Walks along one grid direction through faces unfolded into the grid's plane.
 class StripWalk {
  public:
-  StripWalk(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure) : mesh_(mesh), frames_(frames), measure_(measure) {}
+  StripWalk(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure)
+      : mesh_(mesh), frames_(frames), measure_(measure) {}
 
   /// From the point at share t of feature half-edge `start` into its face, across the feature.
   /// \return the width of the strip in quads, or 0 if no parallel feature is met within `widest` quads
@@ -44,9 +45,12 @@ class StripWalk {
       if (across == 0) return 0;
       const double share = std::clamp(cross(direction, x - from) / across, 0.0, 1.0);
       walked += std::max(0.0, (from + share * (to - from) - x).dot(direction));
-      if (exits_right) chain_.push_back({TriangleMesh::previous(entry), {-static_cast<int>(direction[0]), -static_cast<int>(direction[1])}});
+      if (exits_right)
+        chain_.push_back({TriangleMesh::previous(entry),
+                          {-static_cast<int>(direction[0]), -static_cast<int>(direction[1])}});
       const int exit = exits_right ? TriangleMesh::next(entry) : TriangleMesh::previous(entry);
-      if (measure_.axis[exit] >= 0) return measure_.axis[exit] == 1 - coordinate && walked < widest ? walked : 0;
+      if (measure_.axis[exit] >= 0)
+        return measure_.axis[exit] == 1 - coordinate && walked < widest ? walked : 0;
       entry = mesh_.opposite(exit);
       if (entry < 0) return 0;
       direction = turned(direction, frames_.matching[exit]);
@@ -80,7 +84,8 @@ void widen_narrow_strips(const TriangleMesh& mesh, const FrameField& frames, Gri
       const double width = walk.width(h, t, 1);
       if (width < kNarrowest) continue;
       any = true;
-      for (const FaceOnWalk& on : walk.faces()) factor[on.face][on.coordinate] = std::max(factor[on.face][on.coordinate], 1 / width);
+      for (const FaceOnWalk& on : walk.faces())
+        factor[on.face][on.coordinate] = std::max(factor[on.face][on.coordinate], 1 / width);
     }
   }
   if (!any) return;
@@ -88,7 +93,8 @@ void widen_narrow_strips(const TriangleMesh& mesh, const FrameField& frames, Gri
     for (int c = 0; c < 2; ++c) measure.along[h][c] *= factor[h / 3][c];
 }
 
-std::vector<std::vector<StripEdge>> find_strips(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure, double widest) {
+std::vector<std::vector<StripEdge>> find_strips(const TriangleMesh& mesh, const FrameField& frames,
+                                                const GridMeasure& measure, double widest) {
   std::vector<std::vector<StripEdge>> strips;
   StripWalk walk(mesh, frames, measure);
   for (int h = 0; h < mesh.halfedge_count(); ++h)

@@ -23,7 +23,8 @@ int direction_bit(const Vector2& d) {
   return d[1] >= 0 ? 2 : 8;
 }
 
-std::vector<Departures> feature_departures(const TriangleMesh& mesh, const GridMeasure& measure, const std::vector<std::uint8_t>& corner_turn) {
+std::vector<Departures> feature_departures(const TriangleMesh& mesh, const GridMeasure& measure,
+                                           const std::vector<std::uint8_t>& corner_turn) {
   std::vector<Departures> departures(mesh.vertex_count());
   const auto add = [&](int v, const Vector2& d) {
     ++departures[v].edges;
@@ -37,8 +38,10 @@ std::vector<Departures> feature_departures(const TriangleMesh& mesh, const GridM
   return departures;
 }
 
-/// A feature vertex is on one isoline only if its curve passes straight on in the grid; else both coordinates are integers.
-std::vector<GridConstraint> grid_constraints(const WorkingSurface& surface, const GridMeasure& measure, const VertexGauges& gauges) {
+/// A feature vertex is on one isoline only if its curve passes straight on in the grid; else both coordinates
+/// are integers.
+std::vector<GridConstraint> grid_constraints(const WorkingSurface& surface, const GridMeasure& measure,
+                                             const VertexGauges& gauges) {
   const std::vector<Departures> departures = feature_departures(surface.mesh, measure, gauges.corner_turn);
   std::vector<GridConstraint> constraint(surface.mesh.vertex_count(), GridConstraint::kFree);
   for (int v = 0; v < surface.mesh.vertex_count(); ++v) {
@@ -65,15 +68,18 @@ PeriodicField solve_periodic_field(const WorkingSurface& surface, const FrameFie
   field.constraint = grid_constraints(surface, measure, gauges);
   field.corner_turn = std::move(gauges.corner_turn);
   if (surface.mesh.vertex_count() == 0) return field;
-  PhaseGraph graph = build_phase_graph(surface.mesh, measure, field.corner_turn, field.constraint, options.feature_weight);
-  field.psi = options.solver == PeriodicSolver::kMultilevel ? solve_multilevel_phases(graph, options, context)
-                                                            : solve_gauss_newton_phases(graph, options, context);
+  PhaseGraph graph =
+      build_phase_graph(surface.mesh, measure, field.corner_turn, field.constraint, options.feature_weight);
+  field.psi = options.solver == PeriodicSolver::kMultilevel
+                  ? solve_multilevel_phases(graph, options, context)
+                  : solve_gauss_newton_phases(graph, options, context);
   field.energy = phase_energy(graph, field.psi);
   context.checkpoint(1);
   return field;
 }
 
-std::vector<std::string> violations_of(const PeriodicField& field, const WorkingSurface& surface, const FrameField& frames) {
+std::vector<std::string> violations_of(const PeriodicField& field, const WorkingSurface& surface,
+                                       const FrameField& frames) {
   std::vector<std::string> found;
   const TriangleMesh& mesh = surface.mesh;
   const std::size_t vertices = mesh.vertex_count();
@@ -82,22 +88,28 @@ std::vector<std::string> violations_of(const PeriodicField& field, const Working
     found.push_back("array sizes");
     return found;
   }
-  if (!std::isfinite(field.energy) || field.energy < 0) found.push_back("energy is no finite positive number");
+  if (!std::isfinite(field.energy) || field.energy < 0)
+    found.push_back("energy is no finite positive number");
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const PhasePair& z = field.psi[v];
     const std::string at = " at vertex " + std::to_string(v);
-    if (!(std::abs(std::abs(z.a) - 1) < 1e-9) || !(std::abs(std::abs(z.b) - 1) < 1e-9)) found.push_back("phase not of length one" + at);
+    if (!(std::abs(std::abs(z.a) - 1) < 1e-9) || !(std::abs(std::abs(z.b) - 1) < 1e-9))
+      found.push_back("phase not of length one" + at);
     const GridConstraint c = field.constraint[v];
     if (c == GridConstraint::kIsolineV && z.b != z.a) found.push_back("v is no integer" + at);
     if (c == GridConstraint::kIsolineU && z.b != std::conj(z.a)) found.push_back("u is no integer" + at);
-    if (c == GridConstraint::kCorner && (z.a != z.b || std::abs(z.a.real()) != 1 || z.a.imag() != 0)) found.push_back("corner is off the grid" + at);
-    if (surface.features.is_corner[v] && c != GridConstraint::kCorner) found.push_back("corner is not pinned" + at);
-    if (surface.features.on_feature[v] && c == GridConstraint::kFree) found.push_back("feature vertex is free" + at);
+    if (c == GridConstraint::kCorner && (z.a != z.b || std::abs(z.a.real()) != 1 || z.a.imag() != 0))
+      found.push_back("corner is off the grid" + at);
+    if (surface.features.is_corner[v] && c != GridConstraint::kCorner)
+      found.push_back("corner is not pinned" + at);
+    if (surface.features.on_feature[v] && c == GridConstraint::kFree)
+      found.push_back("feature vertex is free" + at);
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const int next = mesh.rotate_ccw(h);
     if (next < 0 || next == mesh.outgoing(mesh.from(h))) continue;
-    if (field.corner_turn[next] != wrap_turns(field.corner_turn[h] + frames.matching[TriangleMesh::previous(h)]))
+    if (field.corner_turn[next] !=
+        wrap_turns(field.corner_turn[h] + frames.matching[TriangleMesh::previous(h)]))
       found.push_back("corner turns disagree with the matching at half-edge " + std::to_string(h));
   }
   return found;

@@ -19,10 +19,10 @@ enum class GridConstraint : std::uint8_t {
 
 /// Psi of the paper at every vertex, in the complex basis of MATH 3.
 struct PeriodicField {
-  std::vector<PhasePair> psi;               ///< #V, in the vertex's gauge; |a| = |b| = 1, constraints exact
-  std::vector<std::uint8_t> corner_turn;    ///< 3 #F: value in the face = turned(psi[v], corner_turn[3 f + i])
-  std::vector<GridConstraint> constraint;   ///< #V
-  double energy = 0;                        ///< weighted mean of squared edge discrepancies (Eq. 16 over W_sum)
+  std::vector<PhasePair> psi;              ///< #V, in the vertex's gauge; |a| = |b| = 1, constraints exact
+  std::vector<std::uint8_t> corner_turn;   ///< 3 #F: value in the face = turned(psi[v], corner_turn[3 f + i])
+  std::vector<GridConstraint> constraint;  ///< #V
+  double energy = 0;  ///< weighted mean of squared edge discrepancies (Eq. 16 over W_sum)
 };
 
 enum class PeriodicSolver { kMultilevel, kEigenGaussNewton };
@@ -33,14 +33,15 @@ struct PeriodicFieldOptions {
   double constraint_weight = 1;      ///< w_r, Eq. (18)
   double gradient_tolerance = 1e-3;  ///< stop of Gauss-Newton (relative)
   int max_newton_steps = 30;
-  int sweeps = 10;                   ///< nonlinear relaxation sweeps a level
-  int coarsest = 300;                ///< nodes of the level whose eigenvector starts the multilevel solve
+  int sweeps = 10;     ///< nonlinear relaxation sweeps a level
+  int coarsest = 300;  ///< nodes of the level whose eigenvector starts the multilevel solve
 };
 
 /// Minimises the Dirichlet energy of Psi under the feature constraints (paper 2.6, 3.2, 3.3; MATH 5, 6).
 PeriodicField solve_periodic_field(const WorkingSurface& surface, const FrameField& frames,
                                    const PeriodicFieldOptions& options, const RunContext& context);
 
-std::vector<std::string> violations_of(const PeriodicField& field, const WorkingSurface& surface, const FrameField& frames);
+std::vector<std::string> violations_of(const PeriodicField& field, const WorkingSurface& surface,
+                                       const FrameField& frames);
 
 }  // namespace hybrid_quad

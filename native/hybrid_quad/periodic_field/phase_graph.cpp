@@ -33,7 +33,8 @@ void merge_parallel_edges(std::vector<PhaseEdge>& edges) {
     PhaseEdge sum = edges[i];
     std::size_t j = i + 1;
     for (; j < edges.size() && edges[j].from == sum.from && edges[j].to == sum.to &&
-           edges[j].transport.turn == sum.transport.turn; ++j) {
+           edges[j].transport.turn == sum.transport.turn;
+         ++j) {
       sum.transport.a += edges[j].transport.a;
       sum.transport.b += edges[j].transport.b;
     }
@@ -84,7 +85,8 @@ void project_edges(const PhaseGraph& fine, PhaseAggregation& result) {
   coarse.edges.reserve(fine.edges.size());
   for (const PhaseEdge& e : fine.edges) {
     int p = result.aggregate[e.from], q = result.aggregate[e.to];
-    PhaseTransport t = composed(adjoint(result.prolongation[e.to]), composed(e.transport, result.prolongation[e.from]));
+    PhaseTransport t =
+        composed(adjoint(result.prolongation[e.to]), composed(e.transport, result.prolongation[e.from]));
     if (p == q) {
       if (t.turn == 0) {
         coarse.weight_a[p] -= 2 * t.a.real();
@@ -134,7 +136,8 @@ Complex unit_phase(const Complex& z) {
 
 PhasePair projected(const PhasePair& z, GridConstraint constraint) {
   switch (constraint) {
-    case GridConstraint::kFree: return {unit_phase(z.a), unit_phase(z.b)};
+    case GridConstraint::kFree:
+      return {unit_phase(z.a), unit_phase(z.b)};
     case GridConstraint::kIsolineV: {
       const Complex c = unit_phase(z.a + z.b);
       return {c, c};
@@ -174,7 +177,8 @@ void PhaseGraph::index_edges() {
   }
 }
 
-PhaseGraph build_phase_graph(const TriangleMesh& mesh, const GridMeasure& measure, const std::vector<std::uint8_t>& corner_turn,
+PhaseGraph build_phase_graph(const TriangleMesh& mesh, const GridMeasure& measure,
+                             const std::vector<std::uint8_t>& corner_turn,
                              std::vector<GridConstraint> constraint, double feature_weight) {
   PhaseGraph graph;
   graph.constraint = std::move(constraint);

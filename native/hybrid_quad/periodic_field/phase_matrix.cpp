@@ -39,7 +39,8 @@ PhaseMatrix assemble_phase_matrix(const PhaseGraph& graph) {
   PhaseMatrix result;
   const int n = graph.node_count();
   result.offset.assign(n + 1, 0);
-  for (int i = 0; i < n; ++i) result.offset[i + 1] = result.offset[i] + constraint_dimension(graph.constraint[i]);
+  for (int i = 0; i < n; ++i)
+    result.offset[i + 1] = result.offset[i] + constraint_dimension(graph.constraint[i]);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(8 * graph.edges.size() + 6 * static_cast<std::size_t>(n));
   const auto put = [&](int row_node, int column_node, const Matrix4& block) {
@@ -47,7 +48,8 @@ PhaseMatrix assemble_phase_matrix(const PhaseGraph& graph) {
     const int columns = result.offset[column_node + 1] - result.offset[column_node];
     for (int c = 0; c < columns; ++c)
       for (int r = row_node == column_node ? c : 0; r < rows; ++r)
-        if (block(r, c) != 0) entries.emplace_back(result.offset[row_node] + r, result.offset[column_node] + c, block(r, c));
+        if (block(r, c) != 0)
+          entries.emplace_back(result.offset[row_node] + r, result.offset[column_node] + c, block(r, c));
   };
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector4d weight(graph.weight_a[i], graph.weight_a[i], graph.weight_b[i], graph.weight_b[i]);
@@ -57,13 +59,15 @@ PhaseMatrix assemble_phase_matrix(const PhaseGraph& graph) {
   }
   for (const PhaseEdge& e : graph.edges)
     put(e.to, e.from,
-        -(constraint_basis(graph.constraint[e.to]).transpose() * matrix_of(e.transport) * constraint_basis(graph.constraint[e.from])));
+        -(constraint_basis(graph.constraint[e.to]).transpose() * matrix_of(e.transport) *
+          constraint_basis(graph.constraint[e.from])));
   result.lower.resize(result.offset[n], result.offset[n]);
   result.lower.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
 
-Eigen::VectorXd unknowns_of(const PhaseGraph& graph, const PhaseMatrix& matrix, const std::vector<PhasePair>& z) {
+Eigen::VectorXd unknowns_of(const PhaseGraph& graph, const PhaseMatrix& matrix,
+                            const std::vector<PhasePair>& z) {
   Eigen::VectorXd y(matrix.offset.back());
   for (int i = 0; i < graph.node_count(); ++i) {
     const Eigen::Vector4d local = constraint_basis(graph.constraint[i]).transpose() * as_vector(z[i]);
@@ -72,7 +76,8 @@ Eigen::VectorXd unknowns_of(const PhaseGraph& graph, const PhaseMatrix& matrix, 
   return y;
 }
 
-std::vector<PhasePair> phases_of(const PhaseGraph& graph, const PhaseMatrix& matrix, const Eigen::VectorXd& y) {
+std::vector<PhasePair> phases_of(const PhaseGraph& graph, const PhaseMatrix& matrix,
+                                 const Eigen::VectorXd& y) {
   std::vector<PhasePair> z(graph.node_count());
   for (int i = 0; i < graph.node_count(); ++i) {
     Eigen::Vector4d local = Eigen::Vector4d::Zero();

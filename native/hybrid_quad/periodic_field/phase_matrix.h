@@ -7,12 +7,12 @@
 
 namespace hybrid_quad {
 
-/// The form of a PhaseGraph as a real symmetric matrix, its constraints eliminated (MATH 4, 5): a free node has four
-/// unknowns (Re a, Im a, Re b, Im b), one on an isoline two, a corner one, each along an orthonormal direction of the
-/// constraint's space. E = 1/2 y^T H y.
+/// The form of a PhaseGraph as a real symmetric matrix, its constraints eliminated (MATH 4, 5): a free node
+/// has four unknowns (Re a, Im a, Re b, Im b), one on an isoline two, a corner one, each along an orthonormal
+/// direction of the constraint's space. E = 1/2 y^T H y.
 struct PhaseMatrix {
-  Eigen::SparseMatrix<double> lower;   ///< lower triangle of H
-  std::vector<int> offset;             ///< #nodes + 1: first unknown of a node
+  Eigen::SparseMatrix<double> lower;  ///< lower triangle of H
+  std::vector<int> offset;            ///< #nodes + 1: first unknown of a node
 };
 
 PhaseMatrix assemble_phase_matrix(const PhaseGraph& graph);
@@ -21,7 +21,9 @@ PhaseMatrix assemble_phase_matrix(const PhaseGraph& graph);
 Eigen::Matrix4d constraint_basis(GridConstraint constraint);
 int constraint_dimension(GridConstraint constraint);
 
-Eigen::VectorXd unknowns_of(const PhaseGraph& graph, const PhaseMatrix& matrix, const std::vector<PhasePair>& z);
-std::vector<PhasePair> phases_of(const PhaseGraph& graph, const PhaseMatrix& matrix, const Eigen::VectorXd& y);
+Eigen::VectorXd unknowns_of(const PhaseGraph& graph, const PhaseMatrix& matrix,
+                            const std::vector<PhasePair>& z);
+std::vector<PhasePair> phases_of(const PhaseGraph& graph, const PhaseMatrix& matrix,
+                                 const Eigen::VectorXd& y);
 
 }  // namespace hybrid_quad

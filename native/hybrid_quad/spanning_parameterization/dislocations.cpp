@@ -29,12 +29,12 @@ enum class MoveEnd { kNone, kFace, kCone, kBoundary };
 struct Move {
   double cost = kNever;
   int source = -1;
-  int phase = 0;              ///< of a unit: 0 winds a, 1 winds b
-  int version = 0;            ///< of the source's unit; a later search replaces this move
-  IntVector2 burgers{0, 0};   ///< in the source's gauge
+  int phase = 0;             ///< of a unit: 0 winds a, 1 winds b
+  int version = 0;           ///< of the source's unit; a later search replaces this move
+  IntVector2 burgers{0, 0};  ///< in the source's gauge
   MoveEnd end = MoveEnd::kNone;
   int end_face = -1;
-  int end_halfedge = -1;      ///< kBoundary: the one that is left over; kCone: the cone's outgoing half-edge
+  int end_halfedge = -1;  ///< kBoundary: the one that is left over; kCone: the cone's outgoing half-edge
   std::vector<int> crossed;
 };
 
@@ -58,7 +58,8 @@ IntVector2 unit_part(const IntVector2& burgers, int k) {
 /// The widths of narrow strips between features, and what a dislocation that crosses an edge does to them.
 class StripWidths {
  public:
-  StripWidths(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure, const LiftedGrid& grid) {
+  StripWidths(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
+              const LiftedGrid& grid) {
     const auto strips = find_strips(mesh, frames, measure, kGuardedWidth);
     std::vector<std::pair<int, Effect>> effects;
     for (const auto& chain : strips) {
@@ -72,7 +73,8 @@ class StripWidths {
       }
       width_.push_back(static_cast<int>(std::lround(width)));
     }
-    std::stable_sort(effects.begin(), effects.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    std::stable_sort(effects.begin(), effects.end(),
+                     [](const auto& x, const auto& y) { return x.first < y.first; });
     first_.assign(mesh.halfedge_count() + 1, 0);
     for (const auto& e : effects) {
       ++first_[e.first + 1];
@@ -106,9 +108,16 @@ class StripWidths {
 
 class Canceller {
  public:
-  Canceller(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, const SpanningOptions& options,
-            const RunContext& context, LiftedGrid& grid)
-      : surface_(surface), mesh_(surface.mesh), frames_(frames), measure_(measure), options_(options), context_(context), grid_(grid), strips_(surface.mesh, frames, measure, grid) {
+  Canceller(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
+            const SpanningOptions& options, const RunContext& context, LiftedGrid& grid)
+      : surface_(surface),
+        mesh_(surface.mesh),
+        frames_(frames),
+        measure_(measure),
+        options_(options),
+        context_(context),
+        grid_(grid),
+        strips_(surface.mesh, frames, measure, grid) {
     const int n = mesh_.face_count();
     burgers_.resize(n);
     centre_.resize(n);
@@ -141,20 +150,26 @@ class Canceller {
   }
 
  private:
-  double step_length(int f, int g) const { return (centre_[f] - centre_[g]).norm() * 0.5 * (scale_[f] + scale_[g]); }
+  double step_length(int f, int g) const {
+    return (centre_[f] - centre_[g]).norm() * 0.5 * (scale_[f] + scale_[g]);
+  }
 
-  /// Whether a dislocation may slide over half-edge h: over features only along them, no curve below its fewest edges, no
-  /// strip below one quad.
+  /// Whether a dislocation may slide over half-edge h: over features only along them, no curve below its
+  /// fewest edges, no strip below one quad.
   bool may_cross(int h, const IntVector2& b) const {
     if (!strips_.allow(h, b)) return false;
     if (measure_.axis[h] < 0) return true;
     if (b[1 - measure_.axis[h]] != 0) return false;
     const int curve = surface_.features.halfedge_curve[h];
     const int shorter = b[measure_.axis[h]] * along_sign(measure_, h);
-    return shorter <= 0 || grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);
+    return shorter <= 0 ||
+           grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);
   }
 
-  bool takes_in(int v) const { return grid_.constraint[v] == GridConstraint::kCorner && (grid_.holonomy[v] & 1) && !surface_.features.on_feature[v]; }
+  bool takes_in(int v) const {
+    return grid_.constraint[v] == GridConstraint::kCorner && (grid_.holonomy[v] & 1) &&
+           !surface_.features.on_feature[v];
+  }
 
   /// The cheapest end that face t itself offers to what has arrived there.
   void look_for_end(int t, bool at_source, Move& best) const {
@@ -182,10 +197,12 @@ class Canceller {
     }
   }
 
-  bool cancels(int t, const IntVector2& b) const { return unit_count(sum(burgers_[t], b)) < unit_count(burgers_[t]) + unit_count(b); }
+  bool cancels(int t, const IntVector2& b) const {
+    return unit_count(sum(burgers_[t], b)) < unit_count(burgers_[t]) + unit_count(b);
+  }
 
-  /// Shortest paths on the dual graph from `source`, the Burgers vector carried along, until nothing cheaper can come.
-  /// \param visit  called with every settled face; may be empty
+  /// Shortest paths on the dual graph from `source`, the Burgers vector carried along, until nothing cheaper
+  /// can come. \param visit  called with every settled face; may be empty
   Move search(int source, const IntVector2& burgers, double limit, const std::function<void(int)>& visit) {
     Move best;
     best.source = source;
@@ -221,8 +238,10 @@ class Canceller {
       }
     }
     if (best.cost > limit) best.end = MoveEnd::kNone;
-    if (best.end != MoveEnd::kNone) best.crossed = path_to(best.end_face);
-    else best.cost = kNever;
+    if (best.end != MoveEnd::kNone)
+      best.crossed = path_to(best.end_face);
+    else
+      best.cost = kNever;
     return best;
   }
 
@@ -236,7 +255,9 @@ class Canceller {
 
   /// Whether a move found earlier still holds after what has changed since.
   bool still_holds(const Move& move) const {
-    if (unit_count(sum(burgers_[move.source], minus(move.burgers))) + unit_count(move.burgers) != unit_count(burgers_[move.source])) return false;
+    if (unit_count(sum(burgers_[move.source], minus(move.burgers))) + unit_count(move.burgers) !=
+        unit_count(burgers_[move.source]))
+      return false;
     IntVector2 b = move.burgers;
     for (const int h : move.crossed) {
       if (!may_cross(h, b)) return false;
@@ -271,7 +292,8 @@ class Canceller {
   /// The cone moves by d with (1 - R) d = -b, R the turn around it: then the grid closes around it without b.
   void take_in(int outgoing, const IntVector2& b) {
     const int v = mesh_.from(outgoing), turn = grid_.holonomy[v];
-    const IntVector2 d = turn == 1 ? IntVector2{-(b[0] + b[1]) / 2, (b[0] - b[1]) / 2} : IntVector2{(b[1] - b[0]) / 2, -(b[0] + b[1]) / 2};
+    const IntVector2 d = turn == 1 ? IntVector2{-(b[0] + b[1]) / 2, (b[0] - b[1]) / 2}
+                                   : IntVector2{(b[1] - b[0]) / 2, -(b[0] + b[1]) / 2};
     grid_.value[v] += Vector2(d[0], d[1]);
     grid_.jump[outgoing] = sum(grid_.jump[outgoing], sum(d, minus(turned(d, turn))));
     burgers_[outgoing / 3] = sum(burgers_[outgoing / 3], minus(b));
@@ -327,7 +349,8 @@ class Canceller {
   std::vector<Meeting> meetings(int f, const IntVector2& unit) {
     std::vector<Meeting> found;
     search(f, unit, longest_, [&](int t) {
-      if (!is_zero(burgers_[t]) && static_cast<int>(found.size()) < kPartners) found.push_back({t, distance_[t], arrived_[t], {}});
+      if (!is_zero(burgers_[t]) && static_cast<int>(found.size()) < kPartners)
+        found.push_back({t, distance_[t], arrived_[t], {}});
     });
     for (Meeting& m : found) m.crossed = path_to(m.face);
     return found;
@@ -381,18 +404,18 @@ class Canceller {
   StripWidths strips_;
   std::vector<IntVector2> burgers_;
   std::vector<Vector3> centre_;
-  std::vector<double> scale_;   ///< quads a unit of length
+  std::vector<double> scale_;  ///< quads a unit of length
   double longest_ = 0;
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
   // Of the search, valid where the stamp is the current one.
   std::vector<double> distance_;
   std::vector<IntVector2> arrived_;
   std::vector<int> over_, reached_, settled_;
-  std::vector<IntVector2> version_;   ///< by face and phase
+  std::vector<IntVector2> version_;  ///< by face and phase
   std::vector<std::pair<double, int>> heap_;
   int stamp_ = 0;
-  unsigned steps_ = 0;      ///< faces settled in all searches
-  unsigned budget_ = 0;     ///< of them: dislocations that are still there then stay
+  unsigned steps_ = 0;   ///< faces settled in all searches
+  unsigned budget_ = 0;  ///< of them: dislocations that are still there then stay
 };
 
 }  // namespace

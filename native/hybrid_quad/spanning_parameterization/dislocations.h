@@ -6,9 +6,9 @@
 
 namespace hybrid_quad {
 
-/// Moves dislocations through the surface until they meet and vanish, a cone takes them in, or they leave over a feature or
-/// boundary that they slide along (design/FEW_SINGULARITIES 1.6). Always the shortest move first. Only jumps change, and
-/// the values of cones that took something in.
+/// Moves dislocations through the surface until they meet and vanish, a cone takes them in, or they leave
+/// over a feature or boundary that they slide along (design/FEW_SINGULARITIES 1.6). Always the shortest move
+/// first. Only jumps change, and the values of cones that took something in.
 void cancel_dislocations(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          const SpanningOptions& options, const RunContext& context, LiftedGrid& grid);
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kStiffer = 4;
 constexpr double kStiffest = 1e4;
-constexpr double kResidual = 1e-4;
-constexpr int kMostSteps = 40;
+constexpr double kResidual = 1e-2;
+constexpr int kMostSteps = 15;
 /// A face below this share of the frame's own area counts as folded.
 constexpr double kThinShare = 0.03;
 
@@ -25,14 +25,16 @@ struct Component {
   int sign;
 };
 Component component(int coordinate, int turn) {
-  static constexpr Component kTable[4][2] = {{{0, 1}, {1, 1}}, {{1, 1}, {0, -1}}, {{0, -1}, {1, -1}}, {{1, -1}, {0, 1}}};
+  static constexpr Component kTable[4][2] = {
+      {{0, 1}, {1, 1}}, {{1, 1}, {0, -1}}, {{0, -1}, {1, -1}}, {{1, -1}, {0, 1}}};
   return kTable[turn & 3][coordinate];
 }
 
 /// The normal equations' pattern is fixed by the constraints; weights change from round to round.
 class SlipProblem {
  public:
-  SlipProblem(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure, const LiftedGrid& grid)
+  SlipProblem(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
+              const LiftedGrid& grid)
       : mesh_(mesh), frames_(frames), measure_(measure), unknown_(mesh.vertex_count(), {-1, -1}) {
     for (int v = 0; v < mesh.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
@@ -61,7 +63,8 @@ class SlipProblem {
 
  private:
   static bool is_free(GridConstraint constraint, int coordinate) {
-    return constraint == GridConstraint::kFree || (constraint == GridConstraint::kIsolineV && coordinate == 0) ||
+    return constraint == GridConstraint::kFree ||
+           (constraint == GridConstraint::kIsolineV && coordinate == 0) ||
            (constraint == GridConstraint::kIsolineU && coordinate == 1);
   }
 
@@ -87,10 +90,12 @@ class SlipProblem {
     lower_.setFromTriplets(entries_.begin(), entries_.end());
   }
 
-  void add_edge(int h, double weight, const Vector2& pull, const LiftedGrid& grid, Eigen::VectorXd& diagonal) {
+  void add_edge(int h, double weight, const Vector2& pull, const LiftedGrid& grid,
+                Eigen::VectorXd& diagonal) {
     const int p = mesh_.from(h), q = mesh_.to(h);
     for (int c = 0; c < 2; ++c) {
-      const Component at_p = component(c, grid.corner_turn[h]), at_q = component(c, grid.corner_turn[TriangleMesh::next(h)]);
+      const Component at_p = component(c, grid.corner_turn[h]),
+                      at_q = component(c, grid.corner_turn[TriangleMesh::next(h)]);
       const int i = unknown_[p][at_p.index], j = unknown_[q][at_q.index];
       if (i >= 0) {
         diagonal[i] += weight;
@@ -102,13 +107,15 @@ class SlipProblem {
       }
       if (i < 0 || j < 0) continue;
       const double coupling = -weight * at_p.sign * at_q.sign;
-      if (i == j) entries_.emplace_back(i, i, 2 * coupling);
-      else entries_.emplace_back(std::max(i, j), std::min(i, j), coupling);
+      if (i == j)
+        entries_.emplace_back(i, i, 2 * coupling);
+      else
+        entries_.emplace_back(std::max(i, j), std::min(i, j), coupling);
     }
   }
 
-  /// Conjugate gradients from x, preconditioned by the first round's factorization: stiffer spots are few and small, so
-  /// that a handful of steps replaces a new factorization.
+  /// Conjugate gradients from x, preconditioned by the first round's factorization: stiffer spots are few and
+  /// small, so that a handful of steps replaces a new factorization.
   Eigen::VectorXd improved(Eigen::VectorXd x, const RunContext& context) const {
     Eigen::VectorXd applied = lower_.selfadjointView<Eigen::Lower>() * x;
     Eigen::VectorXd residual = right_side_ - applied;
@@ -160,7 +167,8 @@ int badness(const GridFolds& folds) { return folds.faces + 4 * folds.feature_edg
 
 }  // namespace
 
-GridFolds find_folds(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, const LiftedGrid& grid) {
+GridFolds find_folds(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
+                     const LiftedGrid& grid) {
   const TriangleMesh& mesh = surface.mesh;
   GridFolds folds;
   folds.face.assign(mesh.face_count(), 0);
@@ -182,8 +190,8 @@ GridFolds find_folds(const WorkingSurface& surface, const FrameField& frames, co
   return folds;
 }
 
-GridFolds spread_slip(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, int stiffening_rounds,
-                      const RunContext& context, LiftedGrid& grid) {
+GridFolds spread_slip(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
+                      int stiffening_rounds, const RunContext& context, LiftedGrid& grid) {
   std::vector<double> stiffness(surface.mesh.face_count(), 1.0);
   SlipProblem problem(surface.mesh, frames, measure, grid);
   GridFolds best;

@@ -16,8 +16,8 @@ constexpr double kFeatureWeight = 20;
 
 int rounded(double x) { return std::isfinite(x) && std::abs(x) < 1e9 ? static_cast<int>(std::lround(x)) : 0; }
 
-std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field,
-                                 const GridMeasure& measure, LiftedGrid& grid) {
+std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField& frames,
+                                 const PeriodicField& field, const GridMeasure& measure, LiftedGrid& grid) {
   std::vector<PhasePair> psi = field.psi;
   bool any = false;
   for (int v = 0; v < surface.mesh.vertex_count(); ++v) {
@@ -28,7 +28,8 @@ std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField
     any = true;
   }
   if (any) {
-    const PhaseGraph graph = build_phase_graph(surface.mesh, measure, field.corner_turn, grid.constraint, kFeatureWeight);
+    const PhaseGraph graph =
+        build_phase_graph(surface.mesh, measure, field.corner_turn, grid.constraint, kFeatureWeight);
     relax(graph, kSweepsAroundCones, psi);
   }
   return psi;
@@ -37,18 +38,25 @@ std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField
 Vector2 grid_value(const PhasePair& z, GridConstraint constraint) {
   const double alpha = std::arg(z.a), beta = std::arg(z.b);
   switch (constraint) {
-    case GridConstraint::kIsolineV: return {alpha / kPi, 0.0};
-    case GridConstraint::kIsolineU: return {0.0, alpha / kPi};
-    case GridConstraint::kCorner: return {z.a.real() >= 0 ? 0.0 : 1.0, 0.0};
-    default: return {(alpha + beta) / (2 * kPi), (alpha - beta) / (2 * kPi)};
+    case GridConstraint::kIsolineV:
+      return {alpha / kPi, 0.0};
+    case GridConstraint::kIsolineU:
+      return {0.0, alpha / kPi};
+    case GridConstraint::kCorner:
+      return {z.a.real() >= 0 ? 0.0 : 1.0, 0.0};
+    default:
+      return {(alpha + beta) / (2 * kPi), (alpha - beta) / (2 * kPi)};
   }
 }
 
 /// The vector of D2 nearest to x in the phases' coordinates.
-IntVector2 nearest_jump(const Vector2& x) { return burgers_of({rounded(0.5 * (x[0] + x[1])), rounded(0.5 * (x[0] - x[1]))}); }
+IntVector2 nearest_jump(const Vector2& x) {
+  return burgers_of({rounded(0.5 * (x[0] + x[1])), rounded(0.5 * (x[0] - x[1]))});
+}
 
 /// Sets the jump on h's side and what follows from it on the other.
-void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const IntVector2& jump, LiftedGrid& grid) {
+void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const IntVector2& jump,
+              LiftedGrid& grid) {
   grid.jump[h] = jump;
   const int o = mesh.opposite(h);
   if (o < 0) return;
@@ -58,7 +66,8 @@ void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const I
   grid.jump[o] = {rounded(rest[0]), rounded(rest[1])};
 }
 
-void choose_jumps(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure, LiftedGrid& grid) {
+void choose_jumps(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
+                  LiftedGrid& grid) {
   grid.jump.assign(mesh.halfedge_count(), IntVector2{0, 0});
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     if (h < mesh.opposite(h)) continue;
@@ -73,24 +82,32 @@ void choose_jumps(const TriangleMesh& mesh, const FrameField& frames, const Grid
   }
 }
 
-/// Lengthens curves that got fewer quad edges than they need, two at a time (parity is Psi's), where it hurts least.
-void lengthen_short_curves(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, LiftedGrid& grid) {
+/// Lengthens curves that got fewer quad edges than they need, two at a time (parity is Psi's), where it hurts
+/// least.
+void lengthen_short_curves(const WorkingSurface& surface, const FrameField& frames,
+                           const GridMeasure& measure, LiftedGrid& grid) {
   const TriangleMesh& mesh = surface.mesh;
   const auto& curves = surface.features.curves;
   std::vector<double> length(curves.size(), 0.0);
   std::vector<char> is_short(curves.size(), 0);
   std::vector<std::vector<int>> edges(curves.size());
-  const auto lifted_along = [&](int h) { return along_sign(measure, h) * grid.across_half_edge(mesh, h)[measure.axis[h]]; };
+  const auto lifted_along = [&](int h) {
+    return along_sign(measure, h) * grid.across_half_edge(mesh, h)[measure.axis[h]];
+  };
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (measure.axis[h] >= 0 && h > mesh.opposite(h)) length[surface.features.halfedge_curve[h]] += lifted_along(h);
-  for (std::size_t c = 0; c < curves.size(); ++c) is_short[c] = length[c] < fewest_curve_edges(curves[c]) - 0.5;
+    if (measure.axis[h] >= 0 && h > mesh.opposite(h))
+      length[surface.features.halfedge_curve[h]] += lifted_along(h);
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    is_short[c] = length[c] < fewest_curve_edges(curves[c]) - 0.5;
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h) && is_short[surface.features.halfedge_curve[h]])
       edges[surface.features.halfedge_curve[h]].push_back(h);
   for (std::size_t c = 0; c < curves.size(); ++c) {
-    for (int guard = 0; !edges[c].empty() && length[c] < fewest_curve_edges(curves[c]) - 0.5 && guard < 1000; ++guard) {
+    for (int guard = 0; !edges[c].empty() && length[c] < fewest_curve_edges(curves[c]) - 0.5 && guard < 1000;
+         ++guard) {
       const auto deficit = [&](int h) { return measure.along[h].norm() - lifted_along(h); };
-      const int worst = *std::max_element(edges[c].begin(), edges[c].end(), [&](int x, int y) { return deficit(x) < deficit(y); });
+      const int worst = *std::max_element(edges[c].begin(), edges[c].end(),
+                                          [&](int x, int y) { return deficit(x) < deficit(y); });
       IntVector2 jump = grid.jump[worst];
       jump[measure.axis[worst]] += 2 * along_sign(measure, worst);
       set_jump(mesh, frames, worst, jump, grid);
@@ -105,18 +122,21 @@ void lengthen_short_curves(const WorkingSurface& surface, const FrameField& fram
 int unit_count(const IntVector2& burgers) { return std::max(std::abs(burgers[0]), std::abs(burgers[1])); }
 
 int fewest_curve_edges(const FeatureCurve& curve) {
-  const bool returns = curve.closed || (!curve.vertices.empty() && curve.vertices.front() == curve.vertices.back());
+  const bool returns =
+      curve.closed || (!curve.vertices.empty() && curve.vertices.front() == curve.vertices.back());
   return returns ? 4 : 1;
 }
 
-LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field, const GridMeasure& measure) {
+LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field,
+                const GridMeasure& measure) {
   LiftedGrid grid;
   grid.constraint = field.constraint;
   grid.corner_turn = field.corner_turn;
   grid.holonomy = choose_vertex_gauges(surface.mesh, frames).holonomy;
   const std::vector<PhasePair> psi = pin_cones(surface, frames, field, measure, grid);
   grid.value.resize(surface.mesh.vertex_count());
-  for (int v = 0; v < surface.mesh.vertex_count(); ++v) grid.value[v] = grid_value(psi[v], grid.constraint[v]);
+  for (int v = 0; v < surface.mesh.vertex_count(); ++v)
+    grid.value[v] = grid_value(psi[v], grid.constraint[v]);
   choose_jumps(surface.mesh, frames, measure, grid);
   grid.curve_count.assign(surface.features.curves.size(), 0);
   lengthen_short_curves(surface, frames, measure, grid);

@@ -10,42 +10,52 @@ namespace hybrid_quad {
 
 using IntVector2 = std::array<int, 2>;
 
-/// Grid coordinates at the vertices with an integer jump for every half-edge: in face f, half-edge h from p to q measures
+/// Grid coordinates at the vertices with an integer jump for every half-edge: in face f, half-edge h from p
+/// to q measures
 ///   turned(value[q], corner_turn[next h]) - turned(value[p], corner_turn[h]) + jump[h],
-/// which is the opposite of what it measures from the other side. Jumps are in D2 (u + v even). The jumps of a face sum
-/// to its Burgers vector: 0 unless a dislocation sits in it.
+/// which is the opposite of what it measures from the other side. Jumps are in D2 (u + v even). The jumps of
+/// a face sum to its Burgers vector: 0 unless a dislocation sits in it.
 struct LiftedGrid {
-  std::vector<Vector2> value;                ///< #V, (u, v) in the vertex gauge; constrained coordinates are integers
-  std::vector<IntVector2> jump;              ///< 3 #F
-  std::vector<GridConstraint> constraint;    ///< #V; cones count as corners
-  std::vector<std::uint8_t> corner_turn;     ///< 3 #F
-  std::vector<std::uint8_t> holonomy;        ///< #V
-  std::vector<int> curve_count;              ///< #curves: quad edges along it, as lifted
+  std::vector<Vector2> value;    ///< #V, (u, v) in the vertex gauge; constrained coordinates are integers
+  std::vector<IntVector2> jump;  ///< 3 #F
+  std::vector<GridConstraint> constraint;  ///< #V; cones count as corners
+  std::vector<std::uint8_t> corner_turn;   ///< 3 #F
+  std::vector<std::uint8_t> holonomy;      ///< #V
+  std::vector<int> curve_count;            ///< #curves: quad edges along it, as lifted
 
   Vector2 across_half_edge(const TriangleMesh& mesh, int h) const {
     const int n = TriangleMesh::next(h);
-    return turned(value[mesh.to(h)], corner_turn[n]) - turned(value[mesh.from(h)], corner_turn[h]) + Vector2(jump[h][0], jump[h][1]);
+    return turned(value[mesh.to(h)], corner_turn[n]) - turned(value[mesh.from(h)], corner_turn[h]) +
+           Vector2(jump[h][0], jump[h][1]);
   }
   IntVector2 burgers(int f) const {
-    return {jump[3 * f][0] + jump[3 * f + 1][0] + jump[3 * f + 2][0], jump[3 * f][1] + jump[3 * f + 1][1] + jump[3 * f + 2][1]};
+    return {jump[3 * f][0] + jump[3 * f + 1][0] + jump[3 * f + 2][0],
+            jump[3 * f][1] + jump[3 * f + 1][1] + jump[3 * f + 2][1]};
   }
 };
 
 /// Windings of a and b around a face with that Burgers vector.
-inline IntVector2 windings(const IntVector2& burgers) { return {(burgers[0] + burgers[1]) / 2, (burgers[0] - burgers[1]) / 2}; }
-inline IntVector2 burgers_of(const IntVector2& windings) { return {windings[0] + windings[1], windings[0] - windings[1]}; }
+inline IntVector2 windings(const IntVector2& burgers) {
+  return {(burgers[0] + burgers[1]) / 2, (burgers[0] - burgers[1]) / 2};
+}
+inline IntVector2 burgers_of(const IntVector2& windings) {
+  return {windings[0] + windings[1], windings[0] - windings[1]};
+}
 /// Number of unit dislocations: |winding of a| + |winding of b|.
 int unit_count(const IntVector2& burgers);
 
 /// Which way a feature half-edge's coordinate along the curve should grow: +1 or -1.
-inline int along_sign(const GridMeasure& measure, int h) { return measure.along[h][measure.axis[h]] >= 0 ? 1 : -1; }
+inline int along_sign(const GridMeasure& measure, int h) {
+  return measure.along[h][measure.axis[h]] >= 0 ? 1 : -1;
+}
 
 /// The fewest quad edges that a feature curve may get.
 int fewest_curve_edges(const FeatureCurve& curve);
 
-/// Pins the cones of the field to grid points (a posteriori: design/FEW_SINGULARITIES), relaxes the others around them, and
-/// chooses every edge's jump once, by rounding what the frames of both sides measure on average. Feature edges get
-/// exactly nothing across, and curves that would vanish their fewest quad edges.
-LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field, const GridMeasure& measure);
+/// Pins the cones of the field to grid points (a posteriori: design/FEW_SINGULARITIES), relaxes the others
+/// around them, and chooses every edge's jump once, by rounding what the frames of both sides measure on
+/// average. Feature edges get exactly nothing across, and curves that would vanish their fewest quad edges.
+LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field,
+                const GridMeasure& measure);
 
 }  // namespace hybrid_quad

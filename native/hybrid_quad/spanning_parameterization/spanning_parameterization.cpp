@@ -18,9 +18,13 @@ bool is_zero(const GridVector& x) { return x[0] == 0 && x[1] == 0; }
 bool is_integer(std::int64_t x) { return x % kGridUnit == 0; }
 
 /// A translation that leaves Psi alone: both coordinates whole, their sum even.
-bool is_lattice(const GridVector& x) { return is_integer(x[0]) && is_integer(x[1]) && (x[0] / kGridUnit + x[1] / kGridUnit) % 2 == 0; }
+bool is_lattice(const GridVector& x) {
+  return is_integer(x[0]) && is_integer(x[1]) && (x[0] / kGridUnit + x[1] / kGridUnit) % 2 == 0;
+}
 
-std::int64_t fixed_point(double x) { return static_cast<std::int64_t>(std::llround(x * static_cast<double>(kGridUnit))); }
+std::int64_t fixed_point(double x) {
+  return static_cast<std::int64_t>(std::llround(x * static_cast<double>(kGridUnit)));
+}
 
 /// Vertex values in fixed point: constrained coordinates whole, so that every later difference is exact.
 std::vector<GridVector> quantized_values(const LiftedGrid& grid) {
@@ -29,7 +33,8 @@ std::vector<GridVector> quantized_values(const LiftedGrid& grid) {
     const GridConstraint c = grid.constraint[v];
     const bool whole[2] = {c == GridConstraint::kCorner || c == GridConstraint::kIsolineU,
                            c == GridConstraint::kCorner || c == GridConstraint::kIsolineV};
-    for (int i = 0; i < 2; ++i) values[v][i] = whole[i] ? std::llround(grid.value[v][i]) * kGridUnit : fixed_point(grid.value[v][i]);
+    for (int i = 0; i < 2; ++i)
+      values[v][i] = whole[i] ? std::llround(grid.value[v][i]) * kGridUnit : fixed_point(grid.value[v][i]);
   }
   return values;
 }
@@ -43,7 +48,8 @@ std::int64_t determinant(const GridVector& x, const GridVector& y) {
   return x[0] * y[1] - x[1] * y[0];
 }
 
-void write_coordinates(const TriangleMesh& mesh, const FrameField& frames, const LiftedGrid& grid, SpanningParameterization& param) {
+void write_coordinates(const TriangleMesh& mesh, const FrameField& frames, const LiftedGrid& grid,
+                       SpanningParameterization& param) {
   const std::vector<GridVector> values = quantized_values(grid);
   param.halfedge_uv.resize(mesh.halfedge_count());
   param.corner_uv.resize(mesh.halfedge_count());
@@ -58,7 +64,8 @@ void write_coordinates(const TriangleMesh& mesh, const FrameField& frames, const
   }
   for (int f = 0; f < mesh.face_count(); ++f) {
     param.corner_uv[3 * f] = turned(values[mesh.from(3 * f)], grid.corner_turn[3 * f]);
-    for (int i = 0; i < 2; ++i) param.corner_uv[3 * f + i + 1] = sum(param.corner_uv[3 * f + i], param.halfedge_uv[3 * f + i]);
+    for (int i = 0; i < 2; ++i)
+      param.corner_uv[3 * f + i + 1] = sum(param.corner_uv[3 * f + i], param.halfedge_uv[3 * f + i]);
   }
 }
 
@@ -68,7 +75,8 @@ GridVector closing_gap(const SpanningParameterization& param, int f) {
 
 bool features_on_isolines(const WorkingSurface& surface, const SpanningParameterization& param, int f) {
   for (int h = 3 * f; h < 3 * f + 3; ++h)
-    if (surface.features.is_feature(h) && (param.halfedge_uv[h][0] != 0) == (param.halfedge_uv[h][1] != 0)) return false;
+    if (surface.features.is_feature(h) && (param.halfedge_uv[h][0] != 0) == (param.halfedge_uv[h][1] != 0))
+      return false;
   return true;
 }
 
@@ -88,8 +96,9 @@ void classify_faces(const WorkingSurface& surface, SpanningParameterization& par
 
 }  // namespace
 
-SpanningParameterization build_spanning_parameterization(const WorkingSurface& surface, const FrameField& frames,
-                                                         const PeriodicField& psi, const SpanningOptions& options,
+SpanningParameterization build_spanning_parameterization(const WorkingSurface& surface,
+                                                         const FrameField& frames, const PeriodicField& psi,
+                                                         const SpanningOptions& options,
                                                          const RunContext& context) {
   context.checkpoint(0);
   SpanningParameterization param;
@@ -105,7 +114,8 @@ SpanningParameterization build_spanning_parameterization(const WorkingSurface& s
   write_coordinates(surface.mesh, frames, grid, param);
   classify_faces(surface, param);
   param.is_grid_vertex.resize(surface.mesh.vertex_count());
-  for (int v = 0; v < surface.mesh.vertex_count(); ++v) param.is_grid_vertex[v] = grid.constraint[v] == GridConstraint::kCorner;
+  for (int v = 0; v < surface.mesh.vertex_count(); ++v)
+    param.is_grid_vertex[v] = grid.constraint[v] == GridConstraint::kCorner;
   context.checkpoint(1);
   return param;
 }
@@ -115,35 +125,44 @@ std::vector<std::string> violations_of(const SpanningParameterization& param, co
   std::vector<std::string> found;
   const TriangleMesh& mesh = surface.mesh;
   const std::size_t halfedges = mesh.halfedge_count(), faces = mesh.face_count();
-  if (param.corner_uv.size() != halfedges || param.halfedge_uv.size() != halfedges || param.charge.size() != faces ||
-      param.is_regular.size() != faces || param.is_grid_vertex.size() != static_cast<std::size_t>(mesh.vertex_count())) {
+  if (param.corner_uv.size() != halfedges || param.halfedge_uv.size() != halfedges ||
+      param.charge.size() != faces || param.is_regular.size() != faces ||
+      param.is_grid_vertex.size() != static_cast<std::size_t>(mesh.vertex_count())) {
     found.push_back("array sizes");
     return found;
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const std::string at = " at half-edge " + std::to_string(h);
     const int o = mesh.opposite(h), f = h / 3;
-    if (o >= 0 && param.halfedge_uv[o] != minus(turned(param.halfedge_uv[h], frames.matching[h]))) found.push_back("sides disagree" + at);
-    if (h % 3 < 2 && param.corner_uv[h + 1] != sum(param.corner_uv[h], param.halfedge_uv[h])) found.push_back("corners do not follow the edge" + at);
+    if (o >= 0 && param.halfedge_uv[o] != minus(turned(param.halfedge_uv[h], frames.matching[h])))
+      found.push_back("sides disagree" + at);
+    if (h % 3 < 2 && param.corner_uv[h + 1] != sum(param.corner_uv[h], param.halfedge_uv[h]))
+      found.push_back("corners do not follow the edge" + at);
     const int around = mesh.rotate_ccw(h);
-    if (around >= 0 && !is_lattice(difference(turned(param.corner_uv[h], frames.matching[TriangleMesh::previous(h)]), param.corner_uv[around])))
+    if (around >= 0 &&
+        !is_lattice(difference(turned(param.corner_uv[h], frames.matching[TriangleMesh::previous(h)]),
+                               param.corner_uv[around])))
       found.push_back("corner leaves the lattice" + at);
-    if (param.is_grid_vertex[mesh.from(h)] && !(is_integer(param.corner_uv[h][0]) && is_integer(param.corner_uv[h][1])))
+    if (param.is_grid_vertex[mesh.from(h)] &&
+        !(is_integer(param.corner_uv[h][0]) && is_integer(param.corner_uv[h][1])))
       found.push_back("pinned vertex is off the grid" + at);
     if (surface.features.is_feature(h) && param.is_regular[f]) {
       const GridVector& d = param.halfedge_uv[h];
       const int across = d[0] == 0 ? 0 : 1;
-      if (d[across] != 0 || !is_integer(param.corner_uv[h][across])) found.push_back("feature is off its isoline" + at);
+      if (d[across] != 0 || !is_integer(param.corner_uv[h][across]))
+        found.push_back("feature is off its isoline" + at);
     }
   }
   for (int f = 0; f < mesh.face_count(); ++f) {
     const GridVector gap = closing_gap(param, f);
     const IntVector2 burgers = burgers_of(param.charge[f]);
     const std::string at = " at face " + std::to_string(f);
-    if (gap[0] != burgers[0] * kGridUnit || gap[1] != burgers[1] * kGridUnit) found.push_back("gap is not the charge" + at);
+    if (gap[0] != burgers[0] * kGridUnit || gap[1] != burgers[1] * kGridUnit)
+      found.push_back("gap is not the charge" + at);
     if (!param.is_regular[f]) continue;
     if (!is_zero(gap)) found.push_back("regular face does not close" + at);
-    if (determinant(param.halfedge_uv[3 * f], param.halfedge_uv[3 * f + 1]) <= 0) found.push_back("regular face is folded" + at);
+    if (determinant(param.halfedge_uv[3 * f], param.halfedge_uv[3 * f + 1]) <= 0)
+      found.push_back("regular face is folded" + at);
   }
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (!param.is_grid_vertex[v] && (surface.features.is_corner[v] || (frames.cone_index[v] & 1)))

@@ -46,7 +46,9 @@ FrameField torus_frames(const WorkingSurface& surface, double around, double alo
   const TriangleMesh& mesh = surface.mesh;
   std::vector<Vector3> rows_u, rows_v;
   const auto axis_angle = [&](int v) { return std::atan2(mesh.position(v)[1], mesh.position(v)[0]); };
-  const auto tube_angle = [&](int v) { return std::atan2(mesh.position(v)[2], mesh.position(v).head<2>().norm() - major); };
+  const auto tube_angle = [&](int v) {
+    return std::atan2(mesh.position(v)[2], mesh.position(v).head<2>().norm() - major);
+  };
   for (int f = 0; f < mesh.face_count(); ++f) {
     double d[2][2];
     for (int i = 0; i < 2; ++i) {
@@ -69,7 +71,8 @@ FrameField smooth_frames(const WorkingSurface& surface, double h) {
   return frames;
 }
 
-FrameField turned_frames(const WorkingSurface& surface, const FrameField& frames, const std::vector<int>& turns) {
+FrameField turned_frames(const WorkingSurface& surface, const FrameField& frames,
+                         const std::vector<int>& turns) {
   FrameField result = frames;
   for (int f = 0; f < surface.mesh.face_count(); ++f) {
     const Vector3 du = frames.du[f], dv = frames.dv[f];
@@ -81,7 +84,9 @@ FrameField turned_frames(const WorkingSurface& surface, const FrameField& frames
   }
   for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
     const int o = surface.mesh.opposite(h);
-    if (o >= 0) result.matching[h] = static_cast<std::uint8_t>(wrap_turns(frames.matching[h] + turns[o / 3] - turns[h / 3]));
+    if (o >= 0)
+      result.matching[h] =
+          static_cast<std::uint8_t>(wrap_turns(frames.matching[h] + turns[o / 3] - turns[h / 3]));
   }
   return result;
 }
