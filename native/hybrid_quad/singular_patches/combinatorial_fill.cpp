@@ -79,8 +79,8 @@ PatchQuads split_into_quads(const CoarseTriangles& triangles, const PatchSurface
       continue;
     }
     middle[h] = static_cast<int>(result.positions.size());
-    const int minimum = triangles.minimum(h);
-    const int vertex = minimum < 0 ? -1 : triangles.minima()[minimum].vertex;
+    const int passed = triangles.passed_node(h);
+    const int vertex = passed < 0 ? -1 : triangles.passed_nodes()[passed].vertex;
     const auto& p = triangles.positions();
     result.positions.push_back(vertex < 0 ? Vector3(0.5 * (p[triangles.from(h)] + p[triangles.to(h)])) : patch.mesh.position(vertex));
     result.node.push_back(vertex < 0 ? -1 : patch.node[vertex]);
@@ -103,8 +103,9 @@ PatchQuads split_into_quads(const CoarseTriangles& triangles, const PatchSurface
         result.opposite[4 * h] = 4 * TriangleMesh::next(o) + 3;
         result.opposite[4 * TriangleMesh::next(o) + 3] = 4 * h;
       } else {
-        result.arc[4 * h] = triangles.minima()[triangles.minimum(h)].falling_arc;
-        result.arc[4 * after + 3] = triangles.minima()[triangles.minimum(h)].rising_arc;
+        const CoarseTriangles::PassedNode& passed = triangles.passed_nodes()[triangles.passed_node(h)];
+        result.arc[4 * h] = passed.arc_before;
+        result.arc[4 * after + 3] = passed.arc_after;
       }
     }
   }
@@ -135,7 +136,7 @@ PatchQuads combinatorial_fill(const PatchSurface& patch, const RunContext& conte
   CoarseTriangles triangles(patch, border);
   triangles.coarsen(1.5 * h, true, context);
   const double wanted = patch.mesh.total_area() / (h * h);
-  if (3 * triangles.alive_count() > kMostQuadsForShape * (wanted + static_cast<double>(triangles.minima().size())))
+  if (3 * triangles.alive_count() > kMostQuadsForShape * (wanted + static_cast<double>(triangles.passed_nodes().size())))
     triangles.coarsen(h, false, context);
   triangles.flip_towards_six();
   triangles.smooth(surface, 3);

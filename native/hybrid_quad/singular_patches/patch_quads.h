@@ -30,12 +30,16 @@ struct PatchQuads {
 /// The quasi-dual Morse-Smale complex of `morse`: one quad per saddle, its corners the two minima and two maxima that the
 /// saddle's paths reach (paper 4.4, App. A; Edelsbrunner et al. 2003; Robins et al. 2011 for the discrete gradient; ties
 /// broken by vertex id, simulation of simplicity). Pairs of persistence below `persistence` are cancelled.
-/// The result may break violations_of: the caller then takes combinatorial_fill.
+/// The border comes out right whatever the values inside. The shapes may break violations_of: repair_complex mends that
+/// later, or the caller takes combinatorial_fill. Empty for a sphere with one minimum and one maximum.
+/// \throws InternalError if the border is not as promised (border_of)
 PatchQuads morse_smale_quads(const PatchSurface& patch, double persistence, const RunContext& context);
 
 /// Quads for any patch whose border loops have an even number (>= 4) of arcs: a triangulation of the patch whose border
-/// vertices are the border maxima, every triangle split into three quads at its centroid and edge midpoints (the border
-/// minima are the midpoints of border edges). Always valid, never pretty: the last resort.
+/// vertices are every other node, every triangle split into three quads at its centroid and edge midpoints (the other nodes
+/// are the midpoints of border edges). A small disk is filled with as few quads as its angles and size ask for instead.
+/// Always valid, seldom pretty: the last resort.
+/// \throws InternalError if the border is not as promised (border_of)
 PatchQuads combinatorial_fill(const PatchSurface& patch, const RunContext& context);
 
 /// Gluing is an involution; every arc is covered by exactly one border dart whose ends are the arc's nodes; Euler

@@ -21,7 +21,7 @@ CoarseTriangles::CoarseTriangles(const PatchSurface& patch, const PatchBorder& b
   positions_ = mesh.positions();
   for (const auto& t : mesh.faces()) vertex_.insert(vertex_.end(), t.begin(), t.end());
   opposite_ = mesh.opposites();
-  minimum_.assign(vertex_.size(), -1);
+  passed_.assign(vertex_.size(), -1);
   alive_.assign(mesh.face_count(), 1);
   faces_at_.assign(positions_.size(), 0);
   for (const int v : vertex_) ++faces_at_[v];
@@ -38,7 +38,7 @@ int CoarseTriangles::add_face(int a, int b, int c) {
   for (const int v : {a, b, c}) {
     vertex_.push_back(v);
     opposite_.push_back(-1);
-    minimum_.push_back(-1);
+    passed_.push_back(-1);
     ++faces_at_[v];
   }
   alive_.push_back(1);
@@ -50,15 +50,33 @@ void CoarseTriangles::glue(int g, int h) {
   if (h >= 0) opposite_[h] = g;
 }
 
+namespace {
+
+/// How far the nodes after arcs first, first + 2, ... reach across the line between their neighbours, into the patch above all.
+double bend_of(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const std::vector<PatchArc>& loop, int first) {
+  double bend = 0;
+  const int arcs = static_cast<int>(loop.size());
+  for (int k = first; k < arcs + first; k += 2) {
+    const PatchArc &arc = loop[k % arcs], &after = loop[(k + 1) % arcs];
+    const Vector3 line = mesh.position(after.to) - mesh.position(arc.from);
+    const Vector3 off = mesh.position(arc.to) - 0.5 * (mesh.position(after.to) + mesh.position(arc.from));
+    const bool inwards = normals[arc.to].cross(line).dot(off) > 0;
+    bend += (inwards ? 4 : 1) * off.squaredNorm();
+  }
+  return bend;
+}
+
+}  // namespace
+
 void CoarseTriangles::add_collar(const PatchSurface& patch, const std::vector<PatchArc>& loop) {
   const TriangleMesh& mesh = patch.mesh;
-  const int arcs = static_cast<int>(loop.size()), first = loop[0].rising ? 1 : 0;
-  const int outer = static_cast<int>(positions_.size());
+  const int arcs = static_cast<int>(loop.size()), outer = static_cast<int>(positions_.size());
+  const int first = bend_of(mesh, normals_, loop, 0) <= bend_of(mesh, normals_, loop, 1) ? 0 : 1;
   for (int k = 0; k < arcs; k += 2) {
-    const int maximum = loop[(first + k) % arcs].from;
-    positions_.push_back(mesh.position(maximum));
-    normals_.push_back(Vector3(normals_[maximum]));
-    border_vertex_.push_back(maximum);
+    const int node = loop[(first + k) % arcs].from;
+    positions_.push_back(mesh.position(node));
+    normals_.push_back(Vector3(normals_[node]));
+    border_vertex_.push_back(node);
     faces_at_.push_back(0);
   }
   int last = -1, opening = -1;  // sides along which the next face and the very first one are glued
@@ -70,21 +88,21 @@ void CoarseTriangles::add_collar(const PatchSurface& patch, const std::vector<Pa
     last = side_after;
   };
   for (int k = 0; k < arcs; k += 2) {
-    const int here = outer + k / 2, after = outer + (k / 2 + 1) % (arcs / 2);
-    const PatchArc &falling = loop[(first + k) % arcs], &rising = loop[(first + k + 1) % arcs];
-    for (const PatchArc* arc : {&falling, &rising}) {
-      if (arc == &rising) {
-        const int f = add_face(here, after, rising.from);
-        minimum_[f] = static_cast<int>(minima_.size());
-        minima_.push_back({rising.from, falling.id, rising.id});
-        attach(f + 2, f + 1);
-      }
-      for (const int h : arc->halfedges) {
-        const int f = add_face(mesh.to(h), mesh.from(h), arc == &falling ? here : after);
+    const int here = outer + k / 2, there = outer + (k / 2 + 1) % (arcs / 2);
+    const PatchArc &before = loop[(first + k) % arcs], &after = loop[(first + k + 1) % arcs];
+    const auto join_to = [&](const PatchArc& arc, int corner) {
+      for (const int h : arc.halfedges) {
+        const int f = add_face(mesh.to(h), mesh.from(h), corner);
         glue(f, h);
         attach(f + 1, f + 2);
       }
-    }
+    };
+    join_to(before, here);
+    const int f = add_face(here, there, after.from);
+    passed_[f] = static_cast<int>(passed_nodes_.size());
+    passed_nodes_.push_back({after.from, before.id, after.id});
+    attach(f + 2, f + 1);
+    join_to(after, there);
   }
   glue(last, opening);
 }
@@ -154,11 +172,11 @@ void CoarseTriangles::collapse(int h, std::vector<int>& touched) {
     for (int i = 0; i < 3; ++i) --faces_at_[vertex_[3 * (side / 3) + i]];
     alive_[side / 3] = 0;
     const int x = opposite_[next(side)], y = opposite_[previous(side)];
-    const int below = std::max(minimum_[next(side)], minimum_[previous(side)]);
+    const int below = std::max(passed_[next(side)], passed_[previous(side)]);
     for (const auto& [e, beyond] : {std::make_pair(x, y), std::make_pair(y, x)}) {
       if (e < 0) continue;
       opposite_[e] = beyond;
-      if (beyond < 0) minimum_[e] = below;
+      if (beyond < 0) passed_[e] = below;
     }
   }
 }
@@ -212,7 +230,7 @@ void CoarseTriangles::flip(int h) {
   const int h1 = next(h), h2 = previous(h), o1 = next(o), o2 = previous(o);
   // (a, b, c), (b, a, d) become (d, c, a), (c, d, b): sides h, o turn; two outer sides change faces.
   const int bc = opposite_[h1], ca = opposite_[h2], ad = opposite_[o1], db = opposite_[o2];
-  const int bc_below = minimum_[h1], ca_below = minimum_[h2], ad_below = minimum_[o1], db_below = minimum_[o2];
+  const int bc_below = passed_[h1], ca_below = passed_[h2], ad_below = passed_[o1], db_below = passed_[o2];
   vertex_[h] = d, vertex_[h1] = c, vertex_[h2] = a;
   vertex_[o] = c, vertex_[o1] = d, vertex_[o2] = b;
   // A side of one of the two faces may be glued to another side of them: name it by its new place.
@@ -221,7 +239,7 @@ void CoarseTriangles::flip(int h) {
   for (const auto& [side, beyond, below] : {std::make_tuple(h1, new_ca, ca_below), std::make_tuple(h2, new_ad, ad_below),
                                             std::make_tuple(o1, new_db, db_below), std::make_tuple(o2, new_bc, bc_below)}) {
     glue(side, beyond);
-    minimum_[side] = below;
+    passed_[side] = below;
   }
   --faces_at_[a], --faces_at_[b], ++faces_at_[c], ++faces_at_[d];
 }
@@ -279,8 +297,8 @@ void CoarseTriangles::raise_low_valences() {
     const int g = add_face(v[1], v[2], center), k = add_face(v[2], v[0], center);
     for (const auto& [from_side, to_side] : {std::make_pair(f + 1, g), std::make_pair(f + 2, k)}) {
       const int beyond = opposite_[from_side];
-      minimum_[to_side] = minimum_[from_side];
-      minimum_[from_side] = -1;
+      passed_[to_side] = passed_[from_side];
+      passed_[from_side] = -1;
       glue(to_side, beyond == f + 1 ? g : beyond == f + 2 ? k : beyond);
     }
     glue(f + 1, g + 2);
@@ -307,9 +325,9 @@ void CoarseTriangles::compact() {
     const int n = 3 * new_face[h / 3] + static_cast<int>(h % 3), o = opposite_[h];
     vertex_[n] = new_vertex[vertex_[h]];
     opposite_[n] = o < 0 ? -1 : 3 * new_face[o / 3] + o % 3;
-    minimum_[n] = minimum_[h];
+    passed_[n] = passed_[h];
   }
-  for (std::vector<int>* sides : {&vertex_, &opposite_, &minimum_}) sides->resize(3 * faces);
+  for (std::vector<int>* sides : {&vertex_, &opposite_, &passed_}) sides->resize(3 * faces);
   positions_.resize(vertices);
   normals_.resize(vertices);
   border_vertex_.resize(vertices);

@@ -12,8 +12,9 @@ namespace hybrid_quad {
 /// operation: no edge is a loop, inner vertices keep three faces or more, border edges and vertices stay.
 class CoarseTriangles {
  public:
-  /// The patch's triangles inside a collar: a strip of triangles along every border loop whose outer border has the
-  /// border maxima as its only vertices. So the border is right from the start and all vertices of the patch are free.
+  /// The patch's triangles inside a collar: a strip of triangles along every border loop whose outer border has every
+  /// other node (all maxima, or all minima) as its only vertices. So the border is right from the start and all vertices
+  /// of the patch are free. Of the two, the nodes passed over are those that reach less into the patch.
   CoarseTriangles(const PatchSurface& patch, const PatchBorder& border);
 
   /// Collapses edges shorter than `length`, shortest first. \param keep_shape  only where no face turns away from the
@@ -33,16 +34,16 @@ class CoarseTriangles {
   int from(int h) const { return vertex_[h]; }
   int to(int h) const { return vertex_[TriangleMesh::next(h)]; }
   int opposite(int h) const { return opposite_[h]; }
-  /// The border minimum below border half-edge h: index into minima(), -1 inside.
-  int minimum(int h) const { return minimum_[h]; }
+  /// The node that border half-edge h passes over: index into passed_nodes(), -1 inside.
+  int passed_node(int h) const { return passed_[h]; }
   const std::vector<Vector3>& positions() const { return positions_; }
 
-  /// What a border edge stands for: the arc down from one maximum to a minimum and the arc up to the next.
-  struct BorderMinimum {
-    int vertex;         ///< of the patch mesh
-    int falling_arc, rising_arc;
+  /// What a border edge stands for: two arcs with a node between.
+  struct PassedNode {
+    int vertex;  ///< of the patch mesh
+    int arc_before, arc_after;
   };
-  const std::vector<BorderMinimum>& minima() const { return minima_; }
+  const std::vector<PassedNode>& passed_nodes() const { return passed_nodes_; }
   /// The patch vertex that a border vertex is, -1 for inner ones.
   int border_vertex(int v) const { return border_vertex_[v]; }
 
@@ -62,13 +63,13 @@ class CoarseTriangles {
   bool can_flip(int h) const;
   void flip(int h);
 
-  std::vector<int> vertex_, opposite_, minimum_;
+  std::vector<int> vertex_, opposite_, passed_;
   std::vector<char> alive_;             // #F
   std::vector<int> faces_at_;           // #V
   std::vector<int> border_vertex_;      // #V
   std::vector<Vector3> positions_;
   std::vector<Vector3> normals_;        // #V: of the surface
-  std::vector<BorderMinimum> minima_;
+  std::vector<PassedNode> passed_nodes_;
   std::vector<int> fan_;
 };
 
