@@ -166,6 +166,26 @@ TEST(SpanningParameterization, CheckSeesEveryKindOfDamage) {
   }));
 }
 
+TEST(SpanningParameterization, TakesNothingPiecesAndBadFrames) {
+  const WorkingSurface nothing;
+  EXPECT_TRUE(solved(nothing, FrameField{}).param.corner_uv.empty());
+  std::vector<Vector3> points;
+  std::vector<std::array<int, 3>> faces;
+  for (const TriangleMesh& piece : {test::box(5), test::icosphere(2)}) {
+    const int shift = static_cast<int>(points.size());
+    for (const Vector3& p : piece.positions()) points.push_back(p + Vector3(3.0 * shift, 0, 0));
+    for (const auto& t : piece.faces()) faces.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  }
+  points.push_back({9, 9, 9});  // no face
+  const WorkingSurface surface = test::surface_of(TriangleMesh(points, faces), 0.3);
+  FrameField frames = test::smooth_frames(surface, 0.3);
+  EXPECT_GT(regular_faces(solved(surface, frames).param), surface.mesh.face_count() / 2);
+  frames.du[7].setConstant(std::nan(""));
+  frames.du[11].setZero();
+  frames.dv[30] *= 1e6;
+  solved(surface, frames);
+}
+
 TEST(SpanningParameterization, ModelsKeepFewDefects) {
   const std::string folder = test::models_folder();
   if (folder.empty()) GTEST_SKIP() << "no models";

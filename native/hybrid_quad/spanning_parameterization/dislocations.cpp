@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "hybrid_quad/periodic_field/narrow_strips.h"
+#include "hybrid_quad/spanning_parameterization/strip_widths.h"
 
 namespace hybrid_quad {
 
@@ -17,8 +17,6 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Quads that a slide over a feature costs: it skews the grid on the other side too.
 constexpr double kFeatureCost = 0.3;
-/// Strips between features up to this many quads wide must keep a row of quads.
-constexpr double kGuardedWidth = 2.5;
 /// Partners tried for a dislocation that cannot go anywhere alone, and how often that is tried.
 constexpr int kPartners = 8;
 constexpr int kMostMerges = 200;
@@ -54,57 +52,6 @@ IntVector2 unit_part(const IntVector2& burgers, int k) {
   const int s = n > 0 ? 1 : n < 0 ? -1 : 0;
   return k == 0 ? IntVector2{s, s} : IntVector2{s, -s};
 }
-
-/// The widths of narrow strips between features, and what a dislocation that crosses an edge does to them.
-class StripWidths {
- public:
-  StripWidths(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
-              const LiftedGrid& grid) {
-    const auto strips = find_strips(mesh, frames, measure, kGuardedWidth);
-    std::vector<std::pair<int, Effect>> effects;
-    for (const auto& chain : strips) {
-      const int strip = static_cast<int>(width_.size());
-      double width = 0;
-      for (const StripEdge& e : chain) {
-        width += Vector2(e.share[0], e.share[1]).dot(grid.across_half_edge(mesh, e.halfedge));
-        effects.push_back({e.halfedge, {strip, minus(e.share)}});
-        const int o = mesh.opposite(e.halfedge);
-        if (o >= 0) effects.push_back({o, {strip, turned(e.share, frames.matching[e.halfedge])}});
-      }
-      width_.push_back(static_cast<int>(std::lround(width)));
-    }
-    std::stable_sort(effects.begin(), effects.end(),
-                     [](const auto& x, const auto& y) { return x.first < y.first; });
-    first_.assign(mesh.halfedge_count() + 1, 0);
-    for (const auto& e : effects) {
-      ++first_[e.first + 1];
-      effects_.push_back(e.second);
-    }
-    for (int h = 0; h < mesh.halfedge_count(); ++h) first_[h + 1] += first_[h];
-  }
-
-  bool allow(int h, const IntVector2& b) const {
-    for (int i = first_[h]; i < first_[h + 1]; ++i) {
-      const int change = effects_[i].gain[0] * b[0] + effects_[i].gain[1] * b[1];
-      if (change < 0 && width_[effects_[i].strip] + change < 1) return false;
-    }
-    return true;
-  }
-
-  void cross(int h, const IntVector2& b) {
-    for (int i = first_[h]; i < first_[h + 1]; ++i)
-      width_[effects_[i].strip] += effects_[i].gain[0] * b[0] + effects_[i].gain[1] * b[1];
-  }
-
- private:
-  struct Effect {
-    int strip;
-    IntVector2 gain;  ///< change of the width = gain . Burgers vector that leaves over the half-edge
-  };
-  std::vector<int> width_;
-  std::vector<int> first_;
-  std::vector<Effect> effects_;
-};
 
 class Canceller {
  public:
