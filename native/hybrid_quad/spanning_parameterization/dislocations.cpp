@@ -286,9 +286,9 @@ class Canceller {
   }
 
   struct Meeting {
-    int face;
-    double distance;
-    IntVector2 burgers;
+    int face = -1;
+    double distance = 0;
+    IntVector2 burgers{0, 0};
     std::vector<int> crossed;
   };
 
@@ -297,47 +297,54 @@ class Canceller {
     std::vector<Meeting> found;
     search(f, unit, longest_, [&](int t) {
       if (!is_zero(burgers_[t]) && static_cast<int>(found.size()) < kPartners)
-        found.push_back({t, distance_[t], arrived_[t], {}});
+        found.push_back(Meeting{t, distance_[t], arrived_[t], {}});
     });
     for (Meeting& m : found) m.crossed = path_to(m.face);
     return found;
   }
 
+  /// Two dislocations that meet and go on together.
+  struct Merger {
+    double cost = kNever;
+    int source = -1;
+    IntVector2 unit{0, 0};
+    Meeting meeting;
+    Move move;
+  };
+
+  /// What the unit at face f could do together with either unit part at the meeting's face.
+  void try_meeting(int f, const IntVector2& unit, const Meeting& meeting, Merger& best) {
+    for (int phase = 0; phase < 2; ++phase) {
+      const IntVector2 rest = meeting.face == f ? sum(burgers_[f], minus(unit)) : burgers_[meeting.face];
+      const IntVector2 partner = unit_part(rest, phase);
+      if (is_zero(partner) || meeting.distance >= best.cost) continue;
+      const IntVector2 both = sum(meeting.burgers, partner);
+      // Only (2, 0) and (0, 2) slide along features.
+      if (unit_count(both) != 2 || (both[0] != 0 && both[1] != 0)) continue;
+      burgers_[f] = sum(burgers_[f], minus(unit));
+      Move move = search(meeting.face, both, best.cost - meeting.distance, {});
+      burgers_[f] = sum(burgers_[f], unit);
+      if (move.end == MoveEnd::kNone || meeting.distance + move.cost >= best.cost) continue;
+      best = Merger{meeting.distance + move.cost, f, unit, meeting, std::move(move)};
+    }
+  }
+
   /// Brings two dislocations together where both at once can leave though neither can alone.
   bool merge_once() {
-    double best_cost = longest_;
-    Meeting best_meeting{-1, 0, {0, 0}, {}};
-    Move best_move;
-    IntVector2 best_unit{0, 0};
-    int source = -1;
+    Merger best;
+    best.cost = longest_;
     for (int f = 0; f < mesh_.face_count(); ++f)
-      for (int k = 0; k < 2; ++k) {
-        const IntVector2 unit = unit_part(burgers_[f], k);
+      for (int phase = 0; phase < 2; ++phase) {
+        const IntVector2 unit = unit_part(burgers_[f], phase);
         if (is_zero(unit) || steps_ > budget_) continue;
-        for (const Meeting& m : meetings(f, unit))
-          for (int k2 = 0; k2 < 2; ++k2) {
-            const IntVector2 rest = m.face == f ? sum(burgers_[f], minus(unit)) : burgers_[m.face];
-            const IntVector2 partner = unit_part(rest, k2);
-            if (is_zero(partner)) continue;
-            const IntVector2 both = sum(m.burgers, partner);
-            if (unit_count(both) != 2 || (both[0] != 0 && both[1] != 0) || m.distance >= best_cost) continue;
-            burgers_[f] = sum(burgers_[f], minus(unit));
-            Move move = search(m.face, both, best_cost - m.distance, {});
-            burgers_[f] = sum(burgers_[f], unit);
-            if (move.end == MoveEnd::kNone || m.distance + move.cost >= best_cost) continue;
-            best_cost = m.distance + move.cost;
-            best_meeting = m;
-            best_move = std::move(move);
-            best_unit = unit;
-            source = f;
-          }
+        for (const Meeting& meeting : meetings(f, unit)) try_meeting(f, unit, meeting, best);
       }
-    if (source < 0 || steps_ > budget_) return false;
-    carry(best_meeting.crossed, best_unit);
-    perform(best_move);
-    enqueue(source);
-    enqueue(best_meeting.face);
-    if (best_move.end == MoveEnd::kFace) enqueue(best_move.end_face);
+    if (best.source < 0 || steps_ > budget_) return false;
+    carry(best.meeting.crossed, best.unit);
+    perform(best.move);
+    enqueue(best.source);
+    enqueue(best.meeting.face);
+    if (best.move.end == MoveEnd::kFace) enqueue(best.move.end_face);
     return true;
   }
 
