@@ -17,6 +17,7 @@ CurveGeometry::CurveGeometry(std::vector<Vector3> points, bool closed) : points_
 double CurveGeometry::normalized(double s) const {
   const double total = length();
   if (!closed_) return std::min(total, std::max(0.0, s));
+  if (s >= 0 && s < total) return s;
   if (!(total > 0)) return 0;
   s = std::fmod(s, total);
   return s < 0 ? s + total : s;

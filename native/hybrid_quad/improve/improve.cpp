@@ -1,5 +1,6 @@
 #include "hybrid_quad/improve/improve.h"
 
+#include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/untangle.h"
@@ -24,6 +25,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
   Smoother smoother(piece, smoothing);
+  spread_crowded(piece, smoother, context);
   if (options.edit_connectivity) {
     smoother.smooth(kSweepsBefore, context);
     report.connectivity_moves = straighten_features(piece, smoother, context);

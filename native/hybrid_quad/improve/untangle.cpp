@@ -40,8 +40,8 @@ double badness(const Workpiece& piece, const Smoother& smoother, const std::vect
   return sum;
 }
 
-/// Relaxes `rings` rings around q, if that makes them less bad.
-void untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
+/// Relaxes `rings` rings around q, if that makes them less bad. \returns number of vertices relaxed
+int untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
   constexpr double kRegularisation[] = {0.5, 0.2, 0.07, 0.02, 1e-3};
   constexpr int kSweeps = 4;
   std::vector<int> inside = vertices_of(piece.mesh, {q});
@@ -65,13 +65,14 @@ void untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
     }
   for (const double eps : kRegularisation) smoother.relax(inside, kSweeps, eps);
   smoother.update_frames(quads, true);
-  if (badness(piece, smoother, quads) < before) return;
+  if (badness(piece, smoother, quads) < before) return static_cast<int>(inside.size());
   for (std::size_t i = 0; i < inside.size(); ++i) {
     piece.mesh.positions[inside[i]] = positions[i];
     piece.face[inside[i]] = faces[i];
     piece.arc[inside[i]] = arcs[i];
   }
   smoother.update_frames(quads, true);
+  return static_cast<int>(inside.size());
 }
 
 }  // namespace
@@ -93,12 +94,14 @@ std::vector<int> tangled_quads(const Workpiece& piece) {
 }
 
 int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 4, kEffort = 3, kLeastEffort = 2000;
+  // Vertices to relax in all places together: where the whole mesh is bad, no place can be mended alone.
+  int effort = kLeastEffort + kEffort * piece.mesh.vertex_count();
   std::vector<int> tangled = tangled_quads(piece);
   for (int round = 0; round < kRounds && !tangled.empty(); ++round) {
     for (const int q : tangled) {
       context.checkpoint(static_cast<double>(round) / kRounds);
-      untangle_place(piece, smoother, q, 1 + round);
+      if (effort > 0) effort -= untangle_place(piece, smoother, q, 1 + round);
     }
     tangled = tangled_quads(piece);
   }

@@ -155,7 +155,13 @@ struct SearchLimits {
 /// Best-first search for short sequences of moves around a vertex that lower the valence cost.
 class SequenceSearch {
  public:
-  explicit SequenceSearch(EditMesh& mesh) : mesh_(mesh) {}
+  /// \param effort  moves to try in all runs together, per quad of the mesh: a mesh that is bad everywhere must not cost
+  ///                more than a good one by orders of magnitude
+  SequenceSearch(EditMesh& mesh, int effort) : mesh_(mesh), effort_left_(kLeastEffort + static_cast<long long>(effort) * mesh.quad_count()) {}
+
+  bool exhausted() const { return effort_left_ <= 0; }
+  /// Counts one change on trial, relaxed and perhaps undone, as so many moves tried.
+  void count_trial() { effort_left_ -= kEffortOfTrial; }
 
   /// The best sequences that begin at a quad around `seeds`, best first; the mesh is as before.
   const std::vector<Sequence>& run(const std::vector<int>& seeds, const SearchLimits& limits) {
@@ -163,10 +169,13 @@ class SequenceSearch {
     trials_left_ = limits.trials;
     best_.clear();
     extend(seeds, Sequence{});
+    effort_left_ -= limits.trials - std::max(0, trials_left_);
     return best_;
   }
 
  private:
+  static constexpr int kLeastEffort = 20000, kEffortOfTrial = 100;
+
   void extend(const std::vector<int>& seeds, const Sequence& so_far) {
     struct Candidate {
       Sequence sequence;
@@ -228,6 +237,7 @@ class SequenceSearch {
   }
 
   EditMesh& mesh_;
+  long long effort_left_;
   SearchLimits limits_{};
   int trials_left_ = 0;
   std::vector<Sequence> best_;
@@ -277,6 +287,7 @@ int improve_around(Workpiece& piece, Smoother& smoother, SequenceSearch& search,
   constexpr double kGoodEnough = 0.7;
   const std::vector<Sequence> sequences = search.run({v}, limits);
   for (const Sequence& sequence : sequences) {
+    search.count_trial();
     Trial trial(piece, smoother, touched_by(piece, sequence));
     make_sequence(piece, sequence);
     if (trial.keep(kGoodEnough, 0)) return sequence.length;
@@ -366,10 +377,10 @@ bool Trial::keep(double good_enough, double gain) {
 
 int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& context) {
   constexpr SearchLimits kLimits{3, 30, 2.0, 6000, 6, 3};
-  SequenceSearch search(piece.mesh);
+  SequenceSearch search(piece.mesh, 40);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
-  for (int v = 0; v < n; ++v) {
+  for (int v = 0; v < n && !search.exhausted(); ++v) {
     if ((v & 255) == 0) context.checkpoint();
     if (has_straight_corner(piece.mesh, v)) moves += improve_around(piece, smoother, search, v, kLimits);
   }
@@ -379,12 +390,12 @@ int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& 
 int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context) {
   constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5, 3};
   constexpr int kPasses = 2;
-  SequenceSearch search(piece.mesh);
+  SequenceSearch search(piece.mesh, 80);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
   for (int pass = 0; pass < kPasses; ++pass) {
     int made = 0;
-    for (int v = 0; v < n; ++v) {
+    for (int v = 0; v < n && !search.exhausted(); ++v) {
       if ((v & 255) == 0) context.checkpoint();
       if (valence_cost(piece.mesh, v) > 0.5) made += improve_around(piece, smoother, search, v, kLimits);
     }
@@ -397,14 +408,15 @@ int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& con
 int improve_shapes(Workpiece& piece, Smoother& smoother, const RunContext& context) {
   constexpr double kBad = 0.4, kGain = 0.1;
   constexpr SearchLimits kLimits{2, 8, -4.5, 800, 8, 16};
-  SequenceSearch search(piece.mesh);
+  SequenceSearch search(piece.mesh, 40);
   int moves = 0;
-  for (int q = 0; q < piece.mesh.quad_count(); ++q) {
+  for (int q = 0; q < piece.mesh.quad_count() && !search.exhausted(); ++q) {
     if (!piece.mesh.alive(q) || smoother.signed_quality(q) >= kBad) continue;
     context.checkpoint();
     const EditMesh::Quad corners = piece.mesh.quad(q);
     const std::vector<Sequence> sequences = search.run({corners.begin(), corners.end()}, kLimits);
     for (const Sequence& sequence : sequences) {
+      search.count_trial();
       Trial trial(piece, smoother, touched_by(piece, sequence));
       make_sequence(piece, sequence);
       if (!trial.keep(kBad + kGain, kGain)) continue;
