@@ -22,8 +22,9 @@ from pathlib import Path
 FIRST_STAGE = "features"  # the folders before it are tools whose headers everyone may use
 # What a stage offers to later ones beside its own function.
 PUBLIC_HEADERS = {
+    "assemble": {"feature_chains.h"},
     "frame_field": {"frame_topology.h"},
-    "periodic_field": {"grid_measure.h", "phase_graph.h"},
+    "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')

@@ -50,12 +50,13 @@ def test_a_marked_pair_that_is_no_edge():
     with pytest.raises(hybrid_quad.InputError) as caught:
         hybrid_quad.remesh(vertices, faces, sharp_edges=[[0, 20]])
     assert caught.value.code == "unknown_edge"
+    assert (caught.value.element_kind, caught.value.elements) == ("edge", (0, 20))
 
 
 @pytest.mark.parametrize("edges", [[[0, 10**6]], [[-1, 0]]])
 def test_marked_pairs_of_vertices_that_do_not_exist(edges):
     vertices, faces = surfaces.grid(5, 5)
-    with pytest.raises(hybrid_quad.InputError):
+    with pytest.raises(hybrid_quad.InputError, match="no edge"):
         hybrid_quad.remesh(vertices, faces, sharp_edges=edges)
 
 

@@ -79,6 +79,32 @@ def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
     return _as_indices(array, "sharp_edges")
 
 
+def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> None:
+    """Raises InputError ``"unknown_edge"`` where a vertex pair is not an edge of a polygon; names all such pairs."""
+    if not len(edges):
+        return
+    following = np.arange(1, len(polygons.vertices) + 1)
+    filled = polygons.sizes > 0
+    ends = np.cumsum(polygons.sizes)[filled]
+    following[ends - 1] = ends - polygons.sizes[filled]
+    sides = np.stack([polygons.vertices, polygons.vertices[following]], axis=1)
+    known = np.isin(_edge_keys(edges, vertex_count), _edge_keys(sides, vertex_count))
+    unknown = edges[~known | ((edges < 0) | (edges >= vertex_count)).any(axis=1)]
+    if len(unknown):
+        raise InputError(
+            "unknown_edge",
+            f"{len(unknown)} of the marked vertex pairs are no edge of any face",
+            "edge",
+            unknown.reshape(-1).tolist(),
+        )
+
+
+def _edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:
+    ordered = np.sort(edges.astype(np.int64), axis=1)
+    keys: npt.NDArray[np.int64] = ordered[:, 0] * vertex_count + ordered[:, 1]
+    return keys
+
+
 def _as_indices(values: npt.ArrayLike, name: str) -> IntArray:
     array = np.asarray(values)
     if array.size == 0:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import native, report
-from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices
+from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices, require_edges
 from .options import RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
 
@@ -145,12 +145,13 @@ def remesh_with_options(
     """:func:`remesh`, with the settings in one value."""
     from .. import __version__
 
-    polygons = as_polygons(faces)
+    points, polygons, marked = as_vertices(vertices), as_polygons(faces), as_edges(sharp_edges)
+    require_edges(marked, polygons, len(points))
     result = native.load().remesh(
-        as_vertices(vertices),
+        points,
         polygons.sizes,
         polygons.vertices,
-        sharp_edges=as_edges(sharp_edges),
+        sharp_edges=marked,
         progress=progress,
         cancel=cancel,
         snapshot=_snapshot_receiver(dump_stages, on_snapshot),
