@@ -17,12 +17,14 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Euler, Vector
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parent.parent / "addon")))
 
 import hybrid_quad  # noqa: E402
+from hybrid_quad.blender import edge_marks  # noqa: E402
 from hybrid_quad.blender.mesh_source import read_source  # noqa: E402
 from hybrid_quad.blender.remesh_task import prepare_task  # noqa: E402
 from hybrid_quad.core.mesh_io import write_mesh  # noqa: E402
@@ -35,7 +37,8 @@ LINES = (0.03, 0.04, 0.06)
 FEATURES = (0.80, 0.10, 0.08)
 FEWER = (0.95, 0.42, 0.05)  # vertices with three quads
 MORE = (0.05, 0.25, 0.85)  # with five and more
-CROSS = (0.05, 0.28, 0.42)
+CROSS = (0.02, 0.10, 0.20)
+CREASE = math.radians(35)  # shaded as an edge from this angle on
 
 
 class FieldSeen(Exception):
@@ -74,15 +77,17 @@ def main() -> None:
     polygons = np.split(task.source.polygons.vertices, np.cumsum(task.source.polygons.sizes)[:-1])
     thin = 0.035 * edge
     stage.clear()
-    stage.add_surface(task.source.vertices, polygons, INPUT, smooth=False)
+    stage.add_surface(task.source.vertices, polygons, INPUT)
     stage.add_wires(task.source.vertices, task.source.edges, LINES, 0.5 * thin)
     stage.add_wires(task.source.vertices, task.marked_edges, FEATURES, 1.2 * thin)
     pictures = [stage.render(out / "input.png")]
     if field is not None:
         pictures.append(draw_field(stage, field, edge, out / "field.png"))
     stage.clear()
-    stage.add_surface(quads.vertices, list(faces), SURFACE, smooth=True)
-    stage.add_wires(quads.vertices, quads.edges, LINES, thin)
+    stage.add_surface(quads.vertices, list(faces), SURFACE)
+    sharp = (quads.marks & edge_marks.SHARP) != 0
+    stage.add_wires(quads.vertices, quads.edges[~sharp], LINES, thin)
+    stage.add_wires(quads.vertices, quads.edges[sharp], FEATURES, 1.2 * thin)
     fewer, more = irregular_vertices(len(quads.vertices), faces)
     stage.add_balls(quads.vertices[fewer], FEWER, 0.17 * edge)
     stage.add_balls(quads.vertices[more], MORE, 0.17 * edge)
@@ -110,20 +115,20 @@ def find_field(task) -> Snapshot | None:
 
 
 def draw_field(stage: Stage, field: Snapshot, edge: float, path: Path) -> Path:
-    """One cross a face where faces are as large as quads, fewer where they are smaller; cones as balls."""
+    """Crosses about as far apart as the quads are large; cones as balls."""
     triangles = field.face_vertices.reshape(-1, 3)
     corners = field.points[triangles]
     middles = corners.mean(axis=1)
     normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    shown = spread(middles, 0.8 * edge)
+    shown = spread(middles, 1.2 * edge)
     stage.clear()
-    stage.add_surface(field.points, list(triangles), SURFACE, smooth=True)
+    stage.add_surface(field.points, list(triangles), SURFACE)
     centre = middles[shown] + 0.03 * edge * normals[shown]
     for name in ("u direction", "v direction"):
-        step = 0.36 * edge * unit(field.face_vectors[name][shown])
+        step = 0.5 * edge * unit(field.face_vectors[name][shown])
         ends = np.concatenate([centre - step, centre + step])
         pairs = np.stack([np.arange(len(shown)), np.arange(len(shown)) + len(shown)], axis=1)
-        stage.add_wires(ends, pairs, CROSS, 0.04 * edge)
+        stage.add_wires(ends, pairs, CROSS, 0.05 * edge)
     stage.add_wires(field.points, field.lines, FEATURES, 0.05 * edge)
     index = field.vertex_values["cone index"]
     stage.add_balls(field.points[index > 0], FEWER, 0.2 * edge)
@@ -131,11 +136,20 @@ def draw_field(stage: Stage, field: Snapshot, edge: float, path: Path) -> Path:
     return stage.render(path)
 
 
-def spread(points: np.ndarray, distance: float) -> np.ndarray:
-    """Indices of some of the points, no two in one cell of a grid of this width."""
-    cells = np.floor(points / distance).astype(np.int64)
-    _, chosen = np.unique(cells, axis=0, return_index=True)
-    return np.sort(chosen)
+def spread(points: np.ndarray, distance: float) -> list[int]:
+    """Indices of as many of the points as fit with no two closer than `distance`."""
+    chosen: list[int] = []
+    in_cell: dict[tuple[int, ...], list[int]] = {}
+    for index, cell in enumerate(np.floor(points / distance).astype(int).tolist()):
+        near = (
+            other
+            for offset in np.ndindex(3, 3, 3)
+            for other in in_cell.get((cell[0] + offset[0] - 1, cell[1] + offset[1] - 1, cell[2] + offset[2] - 1), ())
+        )
+        if all(np.linalg.norm(points[other] - points[index]) >= distance for other in near):
+            chosen.append(index)
+            in_cell.setdefault(tuple(cell), []).append(index)
+    return chosen
 
 
 def irregular_vertices(vertex_count: int, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -204,9 +218,14 @@ class Stage:
             bpy.data.objects.remove(thing)
         self._things.clear()
 
-    def add_surface(self, points: np.ndarray, faces: list, colour: tuple, smooth: bool) -> None:
-        obj = self._add_mesh(points, [], faces, colour, roughness=0.55)
-        obj.data.polygons.foreach_set("use_smooth", [smooth] * len(obj.data.polygons))
+    def add_surface(self, points: np.ndarray, faces: list, colour: tuple) -> None:
+        """Shaded smooth but for its creases."""
+        mesh = self._add_mesh(points, [], faces, colour, roughness=0.55).data
+        mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+        if hasattr(mesh, "use_auto_smooth"):
+            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, CREASE
+        else:  # from Blender 4.1 on
+            mesh.set_sharp_from_angle(angle=CREASE)
 
     def add_wires(self, points: np.ndarray, edges: np.ndarray, colour: tuple, width: float) -> None:
         """Edges as square rods."""
@@ -296,6 +315,12 @@ class Stage:
         around = middle + 1.06 * (points - middle)
         fitted = camera.camera_fit_coords(layer.depsgraph, around.ravel().tolist())
         camera.location = Vector(fitted[0])
+        layer.update()
+        # No empty stripes above and below a flat model.
+        heights = [world_to_camera_view(self._scene, camera, Vector(point)).y for point in around[:: 1 + len(around) // 5000]]
+        render = self._scene.render
+        render.use_border = render.use_crop_to_border = True
+        render.border_min_y, render.border_max_y = max(0.0, min(heights) - 0.02), min(1.0, max(heights) + 0.02)
 
 
 def _extent(points: np.ndarray) -> float:
