@@ -28,7 +28,8 @@ TEST(CombinatorialFill, NeverFails) {
       patch.target_length = factor * 4 * mesh.mean_edge_length();
       const PatchQuads quads = combinatorial_fill(patch, RunContext{});
       const auto found = violations_of(quads, patch);
-      EXPECT_TRUE(found.empty()) << "seed " << seed << " family " << seed % kSurfaceFamilies << " factor " << factor << ": " << joined(found);
+      EXPECT_TRUE(found.empty()) << "seed " << seed << " family " << seed % kSurfaceFamilies << " factor "
+                                 << factor << ": " << joined(found);
     }
   }
 }
@@ -127,7 +128,8 @@ TEST(PatchQuads, EveryBrokenPromiseIsSeen) {
   EXPECT_TRUE(broken([&](PatchQuads& q) { std::swap(q.opposite[0], q.opposite[1]); }));
   EXPECT_TRUE(broken([&](PatchQuads& q) { q.opposite.clear(); }));
   EXPECT_TRUE(broken([&](PatchQuads& q) { q = PatchQuads{}; }));
-  const PatchQuads other = combinatorial_fill(random_patch(flat_grid(12, 12), Values::kRandom, random), RunContext{});
+  const PatchQuads other =
+      combinatorial_fill(random_patch(flat_grid(12, 12), Values::kRandom, random), RunContext{});
   EXPECT_FALSE(violations_of(other, patch).empty());
 }
 

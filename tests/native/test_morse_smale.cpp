@@ -13,7 +13,8 @@ namespace {
 
 using namespace test;
 
-constexpr Values kAllValues[] = {Values::kRandom, Values::kConstant, Values::kWave, Values::kFew, Values::kWild};
+constexpr Values kAllValues[] = {Values::kRandom, Values::kConstant, Values::kWave, Values::kFew,
+                                 Values::kWild};
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string all;
@@ -29,7 +30,8 @@ TEST(DiscreteGradient, CriticalCellsCountTheEulerCharacteristicAndPathsDescend) 
     for (int v = 0; v < mesh.vertex_count(); ++v) rank[v] = v;
     std::shuffle(rank.begin(), rank.end(), random);
     const DiscreteGradient g = discrete_gradient(mesh, rank, std::vector<int>(mesh.vertex_count(), -1));
-    const auto minima = std::count(g.down.begin(), g.down.end(), -1), maxima = std::count(g.up.begin(), g.up.end(), -1);
+    const auto minima = std::count(g.down.begin(), g.down.end(), -1),
+               maxima = std::count(g.up.begin(), g.up.end(), -1);
     EXPECT_EQ(minima - static_cast<long>(g.critical_edges.size()) + maxima, mesh.euler_characteristic());
 
     std::vector<int> uses(mesh.halfedge_count(), 0);  // every edge exactly once
@@ -42,7 +44,8 @@ TEST(DiscreteGradient, CriticalCellsCountTheEulerCharacteristicAndPathsDescend) 
     for (const int h : g.up)
       if (h >= 0) ++uses[DiscreteGradient::edge_of(mesh, h)];
     for (const int h : g.critical_edges) ++uses[h];
-    for (int h = 0; h < mesh.halfedge_count(); ++h) EXPECT_EQ(uses[h], DiscreteGradient::edge_of(mesh, h) == h ? 1 : 0);
+    for (int h = 0; h < mesh.halfedge_count(); ++h)
+      EXPECT_EQ(uses[h], DiscreteGradient::edge_of(mesh, h) == h ? 1 : 0);
   }
 }
 
@@ -107,7 +110,8 @@ TEST(MorseSmale, CancellationRemovesNoise) {
   PatchSurface patch = random_patch(mesh, Values::kConstant, random);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const Vector3& p = mesh.position(v);
-    patch.morse[v] = std::cos(3 * M_PI * p.x()) * std::cos(3 * M_PI * p.y()) + 0.3 * (random() / 4294967296.0 - 0.5);
+    patch.morse[v] =
+        std::cos(3 * M_PI * p.x()) * std::cos(3 * M_PI * p.y()) + 0.3 * (random() / 4294967296.0 - 0.5);
   }
   const std::size_t noisy = morse_smale_quads(patch, 0, RunContext{}).quads.size();
   const std::size_t clean = morse_smale_quads(patch, 0.3, RunContext{}).quads.size();
@@ -118,7 +122,8 @@ TEST(MorseSmale, CancellationRemovesNoise) {
 TEST(MorseSmale, SameInputSameQuads) {
   std::mt19937 random(3);
   const PatchSurface patch = random_patch(punctured(torus(20, 12), 4, random), Values::kFew, random);
-  const PatchQuads a = morse_smale_quads(patch, 0.3, RunContext{}), b = morse_smale_quads(patch, 0.3, RunContext{});
+  const PatchQuads a = morse_smale_quads(patch, 0.3, RunContext{}),
+                   b = morse_smale_quads(patch, 0.3, RunContext{});
   EXPECT_EQ(a.quads, b.quads);
   EXPECT_EQ(a.opposite, b.opposite);
 }

@@ -23,7 +23,8 @@ TEST(QuadComplex, IndexedQuadsGlueAlongTheirSides) {
 }
 
 TEST(QuadComplex, GluingsThatVertexPairsCannotTellApartAreStillComplexes) {
-  for (const QuadComplex& c : {quad_tube(1, 1), quad_tube(2, 3), quad_torus(1, 1), quad_torus(2, 1), pillow()}) {
+  for (const QuadComplex& c :
+       {quad_tube(1, 1), quad_tube(2, 3), quad_torus(1, 1), quad_torus(2, 1), pillow()}) {
     EXPECT_TRUE(violations_of(c).empty());
     EXPECT_FALSE(violations_of(to_quad_mesh(c)).empty());
   }
@@ -71,7 +72,10 @@ TEST(QuadMesh, EveryBrokenPromiseIsSeen) {
   EXPECT_TRUE(broken([](QuadMesh& m) { m.quads[0][1] = m.quads[0][2]; }));
   EXPECT_TRUE(broken([](QuadMesh& m) { std::swap(m.quads[0][1], m.quads[0][3]); }));  // flipped
   EXPECT_TRUE(broken([](QuadMesh& m) { m.quads.push_back(m.quads[0]); }));
-  EXPECT_TRUE(broken([](QuadMesh& m) { m.quads[0][0] = 26; m.quads[0][2] = 99; }));
+  EXPECT_TRUE(broken([](QuadMesh& m) {
+    m.quads[0][0] = 26;
+    m.quads[0][2] = 99;
+  }));
   EXPECT_TRUE(broken([](QuadMesh& m) { m.kind.pop_back(); }));
   EXPECT_TRUE(broken([](QuadMesh& m) { m.positions[3].y() = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(broken([](QuadMesh& m) { m.feature_edges.push_back({m.quads[0][0], m.quads[0][2], 0}); }));

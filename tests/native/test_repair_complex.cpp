@@ -20,7 +20,8 @@ std::string joined(const std::vector<std::string>& lines) {
   return all;
 }
 
-/// Edges and vertices of odd degree of every curve, corners: what repairs must keep, but for the number of edges, which may grow.
+/// Edges and vertices of odd degree of every curve, corners: what repairs must keep, but for the number of
+/// edges, which may grow.
 struct Features {
   std::map<int, int> edges;
   std::map<int, int> ends;
@@ -106,7 +107,8 @@ TEST(RepairComplex, FeaturesOnThinTubesTorAndPillowsStay) {
 }
 
 TEST(RepairComplex, WhateverMorseSmaleComplexesLeave) {
-  constexpr Values kAllValues[] = {Values::kRandom, Values::kConstant, Values::kWave, Values::kFew, Values::kWild};
+  constexpr Values kAllValues[] = {Values::kRandom, Values::kConstant, Values::kWave, Values::kFew,
+                                   Values::kWild};
   for (int seed = 0; seed < 600; ++seed) {
     std::mt19937 random(4000 + seed);
     const TriangleMesh mesh = random_surface(seed % kSurfaceFamilies, random);
@@ -134,19 +136,24 @@ TEST(RepairComplex, WhateverMorseSmaleComplexesLeave) {
 }
 
 TEST(RepairComplex, LeavesGoodComplexesAlone) {
-  for (QuadComplex c : {quad_box(2, 3, 2), quad_grid(1, 1), quad_grid(5, 4), quad_torus(5, 5), quad_box(1, 1, 1)}) {
+  for (QuadComplex c :
+       {quad_box(2, 3, 2), quad_grid(1, 1), quad_grid(5, 4), quad_torus(5, 5), quad_box(1, 1, 1)}) {
     const QuadComplex before = c;
     const ComplexRepairReport report = repair_complex(c);
     EXPECT_EQ(c.vertex, before.vertex);
     EXPECT_EQ(c.opposite, before.opposite);
-    EXPECT_EQ(report.split_polychords + report.restarred_edges + report.inset_quads + report.merged_doublets, 0);
+    EXPECT_EQ(report.split_polychords + report.restarred_edges + report.inset_quads + report.merged_doublets,
+              0);
   }
 }
 
 TEST(RepairComplex, AnyLocalChangeKeepsTheSurface) {
   for (int seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
-    QuadComplex c = seed % 4 == 0 ? quad_box(2, 3, 2) : seed % 4 == 1 ? quad_grid(5, 4) : seed % 4 == 2 ? quad_torus(3, 4) : quad_tube(3, 3);
+    QuadComplex c = seed % 4 == 0   ? quad_box(2, 3, 2)
+                    : seed % 4 == 1 ? quad_grid(5, 4)
+                    : seed % 4 == 2 ? quad_torus(3, 4)
+                                    : quad_tube(3, 3);
     const int chi = euler_characteristic(c);
     const std::size_t borders = border_loop_lengths(c).size();
     ComplexEditor editor(c);
@@ -178,7 +185,8 @@ TEST(RepairComplex, AnyLocalChangeKeepsTheSurface) {
 }
 
 TEST(Polychords, SplittingAllRefinesEveryQuadIntoFour) {
-  for (const QuadComplex& c : {quad_box(1, 2, 1), quad_tube(1, 1), quad_torus(1, 1), pillow(), quad_grid(2, 3)}) {
+  for (const QuadComplex& c :
+       {quad_box(1, 2, 1), quad_tube(1, 1), quad_torus(1, 1), pillow(), quad_grid(2, 3)}) {
     const Polychords p = trace_polychords(c);
     int crossings = 0;
     for (const int l : p.length) crossings += l;

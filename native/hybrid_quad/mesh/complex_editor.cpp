@@ -115,9 +115,11 @@ void ComplexEditor::inset(int q, int anchor) {
   for (int i = 0; i < 4; ++i) {
     const int outside = complex_.opposite[4 * q + i];
     const bool own = outside >= 0 && outside / 4 == q;
-    for (const int o : {own ? ring_dart(outside & 3, 0) : outside, ring_dart(i + 1, 3), 4 * q + i, ring_dart(i + 3, 1)})
+    for (const int o :
+         {own ? ring_dart(outside & 3, 0) : outside, ring_dart(i + 1, 3), 4 * q + i, ring_dart(i + 3, 1)})
       complex_.opposite.push_back(o);
-    for (const int v : {outer[i], outer[(i + 1) & 3], inner[(i + 1) & 3], inner[i]}) complex_.vertex.push_back(v);
+    for (const int v : {outer[i], outer[(i + 1) & 3], inner[(i + 1) & 3], inner[i]})
+      complex_.vertex.push_back(v);
     for (const int c : {complex_.curve[4 * q + i], -1, -1, -1}) complex_.curve.push_back(c);
     alive_.push_back(1);
     ++corners_[outer[i]];
@@ -136,7 +138,8 @@ void ComplexEditor::inset(int q, int anchor) {
 
 namespace {
 
-/// The vertices of restar's hexagon that gain a quad: those after to(d) on the left and before it on the right.
+/// The vertices of restar's hexagon that gain a quad: those after to(d) on the left and before it on the
+/// right.
 std::array<int, 2> gaining(const QuadComplex& c, int d) {
   return {c.to(QuadComplex::next(d)), c.from(QuadComplex::previous(c.opposite[d]))};
 }
@@ -162,7 +165,8 @@ int ComplexEditor::restar_valence_cost(int d) const {
 }
 
 void ComplexEditor::restar(int d, int anchor) {
-  const int o = complex_.opposite[d], l = 4 * (d / 4), r = 4 * (o / 4), n = static_cast<int>(complex_.opposite.size());
+  const int o = complex_.opposite[d], l = 4 * (d / 4), r = 4 * (o / 4),
+            n = static_cast<int>(complex_.opposite.size());
   const int d1 = QuadComplex::next(d), d2 = d ^ 2, d3 = QuadComplex::previous(d);
   const int o1 = QuadComplex::next(o), o2 = o ^ 2, o3 = QuadComplex::previous(o);
   const int u = complex_.from(d), v = complex_.to(d), c = complex_.to(d1), e = complex_.to(d2);
@@ -178,8 +182,10 @@ void ComplexEditor::restar(int d, int anchor) {
   ++corners_[b];
   ++corners_[c];
 
-  // The six outer sides and where they go: left quad (w, c, e, u), right quad (w, u, a, b), new quad (w, b, v, c).
-  const std::array<int, 6> old_side{d1, d2, d3, o1, o2, o3}, new_side{n + 2, l + 1, l + 2, r + 1, r + 2, n + 1};
+  // The six outer sides and where they go: left quad (w, c, e, u), right quad (w, u, a, b), new quad (w, b,
+  // v, c).
+  const std::array<int, 6> old_side{d1, d2, d3, o1, o2, o3},
+      new_side{n + 2, l + 1, l + 2, r + 1, r + 2, n + 1};
   std::array<int, 6> beyond, curve;
   for (int i = 0; i < 6; ++i) {
     beyond[i] = complex_.opposite[old_side[i]];
@@ -187,7 +193,8 @@ void ComplexEditor::restar(int d, int anchor) {
     for (int k = 0; k < 6; ++k)
       if (complex_.opposite[old_side[i]] == old_side[k]) beyond[i] = new_side[k];
   }
-  for (std::vector<int>* sides : {&complex_.opposite, &complex_.vertex, &complex_.curve}) sides->resize(n + 4, -1);
+  for (std::vector<int>* sides : {&complex_.opposite, &complex_.vertex, &complex_.curve})
+    sides->resize(n + 4, -1);
   alive_.push_back(1);
   ++alive_count_;
   const std::array<std::array<int, 4>, 3> quads{{{w, c, e, u}, {w, u, a, b}, {w, b, v, c}}};

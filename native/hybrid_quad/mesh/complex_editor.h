@@ -7,8 +7,8 @@
 
 namespace hybrid_quad {
 
-/// Local changes of a quad complex that keep it a complex of the same topology, with its curves, corners and border.
-/// Removed quads stay in the arrays, marked, until compact().
+/// Local changes of a quad complex that keep it a complex of the same topology, with its curves, corners and
+/// border. Removed quads stay in the arrays, marked, until compact().
 class ComplexEditor {
  public:
   explicit ComplexEditor(QuadComplex& complex);
@@ -19,23 +19,24 @@ class ComplexEditor {
   int corner_count(int v) const { return corners_[v]; }
   bool on_border(int v) const { return border_[v] != 0; }
 
-  /// Whether the quad of dart d may vanish by making its corners from(d) and from(d + 2) one vertex: they are two, at
-  /// most one of them is on the border and at most one is bound to a curve or corner, and no two feature or border sides
-  /// would be laid on each other.
+  /// Whether the quad of dart d may vanish by making its corners from(d) and from(d + 2) one vertex: they are
+  /// two, at most one of them is on the border and at most one is bound to a curve or corner, and no two
+  /// feature or border sides would be laid on each other.
   bool can_collapse(int d) const;
 
-  /// Collapses that quad. from(d) stays, with its position, unless from(d + 2) is more bound or on the border.
-  /// \pre can_collapse(d) \return the vertex that stayed
+  /// Collapses that quad. from(d) stays, with its position, unless from(d + 2) is more bound or on the
+  /// border. \pre can_collapse(d) \return the vertex that stayed
   int collapse(int d);
 
   /// Puts a smaller quad into q and four quads around it: every corner of q gains one quad.
   /// \param anchor  of the four new vertices (free)
   void inset(int q, int anchor);
 
-  /// Whether restar(d) is possible: an inner side that is no feature between two quads, whose end can spare a quad.
+  /// Whether restar(d) is possible: an inner side that is no feature between two quads, whose end can spare a
+  /// quad.
   bool can_restar(int d) const;
-  /// Takes the side d away: the hexagon of its two quads becomes three quads around a new free vertex, which is joined to
-  /// from(d). to(d) loses a quad. \pre can_restar(d)
+  /// Takes the side d away: the hexagon of its two quads becomes three quads around a new free vertex, which
+  /// is joined to from(d). to(d) loses a quad. \pre can_restar(d)
   void restar(int d, int anchor);
   /// How much restar(d) raises the sum of squared differences of valences from 4.
   int restar_valence_cost(int d) const;

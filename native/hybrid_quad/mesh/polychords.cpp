@@ -62,7 +62,8 @@ class Splitter {
     for (int d = 0; d < static_cast<int>(cut_.size()); ++d) {
       if (!cut_[d] || middle_[d] >= 0) continue;
       const Vector3 p = 0.5 * (old_.positions[old_.from(d)] + old_.positions[old_.to(d)]);
-      middle_[d] = old_.curve[d] >= 0 ? add(p, VertexKind::kCurve, old_.curve[d]) : add(p, VertexKind::kFree, region_[d / 4]);
+      middle_[d] = old_.curve[d] >= 0 ? add(p, VertexKind::kCurve, old_.curve[d])
+                                      : add(p, VertexKind::kFree, region_[d / 4]);
       if (old_.opposite[d] >= 0) middle_[old_.opposite[d]] = middle_[d];
     }
     for (int q = 0; q < old_.quad_count(); ++q) fill(q);
@@ -85,10 +86,14 @@ class Splitter {
   int part(int d, int k) const {
     const int q = d / 4, n = columns(q), m = rows(q);
     switch (d & 3) {
-      case 0: return 4 * sub(q, k, 0);
-      case 1: return 4 * sub(q, n - 1, k) + 1;
-      case 2: return 4 * sub(q, n - 1 - k, m - 1) + 2;
-      default: return 4 * sub(q, 0, m - 1 - k) + 3;
+      case 0:
+        return 4 * sub(q, k, 0);
+      case 1:
+        return 4 * sub(q, n - 1, k) + 1;
+      case 2:
+        return 4 * sub(q, n - 1 - k, m - 1) + 2;
+      default:
+        return 4 * sub(q, 0, m - 1 - k) + 3;
     }
   }
 
@@ -105,7 +110,8 @@ class Splitter {
     int center = -1;
     if (n == 2 && m == 2) {
       const auto& p = old_.positions;
-      center = add(0.25 * (p[corner[0]] + p[corner[1]] + p[corner[2]] + p[corner[3]]), VertexKind::kFree, region_[q]);
+      center = add(0.25 * (p[corner[0]] + p[corner[1]] + p[corner[2]] + p[corner[3]]), VertexKind::kFree,
+                   region_[q]);
     }
     const auto at = [&](int i, int j) {
       if (i % n == 0 && j % m == 0) return corner[j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2)];
@@ -137,7 +143,8 @@ class Splitter {
 
 }  // namespace
 
-QuadComplex split_polychords(const QuadComplex& complex, const Polychords& polychords, const std::vector<char>& chosen) {
+QuadComplex split_polychords(const QuadComplex& complex, const Polychords& polychords,
+                             const std::vector<char>& chosen) {
   return Splitter(complex, polychords, chosen).run();
 }
 

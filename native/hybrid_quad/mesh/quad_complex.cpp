@@ -30,7 +30,8 @@ QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<s
     if (j - i > 2) throw InternalError("quad complex", "a side belongs to more than two quads");
     if (j - i == 2) {
       const int d = sides[i][2], e = sides[i + 1][2];
-      if (complex.from(d) != complex.to(e)) throw InternalError("quad complex", "two quads run along a side in the same direction");
+      if (complex.from(d) != complex.to(e))
+        throw InternalError("quad complex", "two quads run along a side in the same direction");
       complex.opposite[d] = e;
       complex.opposite[e] = d;
     }
@@ -73,12 +74,16 @@ namespace {
 /// Where the arrays cannot even be read as a complex, the finer checks make no sense.
 bool sizes_agree(const QuadComplex& c, std::vector<std::string>& found) {
   const std::size_t darts = c.opposite.size(), vertices = c.positions.size();
-  if (darts % 4 != 0 || c.vertex.size() != darts || c.curve.size() != darts) found.push_back("dart arrays differ in length");
-  if (c.kind.size() != vertices || c.anchor.size() != vertices) found.push_back("vertex arrays differ in length");
+  if (darts % 4 != 0 || c.vertex.size() != darts || c.curve.size() != darts)
+    found.push_back("dart arrays differ in length");
+  if (c.kind.size() != vertices || c.anchor.size() != vertices)
+    found.push_back("vertex arrays differ in length");
   for (std::size_t d = 0; d < darts && found.empty(); ++d) {
     const int o = c.opposite[d], v = c.vertex[d];
-    if (o < -1 || o >= static_cast<int>(darts)) found.push_back("dart " + std::to_string(d) + " is glued to no dart");
-    if (v < 0 || v >= static_cast<int>(vertices)) found.push_back("dart " + std::to_string(d) + " starts at no vertex");
+    if (o < -1 || o >= static_cast<int>(darts))
+      found.push_back("dart " + std::to_string(d) + " is glued to no dart");
+    if (v < 0 || v >= static_cast<int>(vertices))
+      found.push_back("dart " + std::to_string(d) + " starts at no vertex");
   }
   return found.empty();
 }
@@ -94,7 +99,8 @@ void check_gluing(const QuadComplex& c, std::vector<std::string>& found) {
       found.push_back(name + ": gluing is no involution");
       continue;
     }
-    if (c.from(o) != c.to(d) || c.to(o) != c.from(d)) found.push_back(name + ": its two sides disagree on the vertices");
+    if (c.from(o) != c.to(d) || c.to(o) != c.from(d))
+      found.push_back(name + ": its two sides disagree on the vertices");
     if (c.curve[o] != c.curve[d]) found.push_back(name + ": its two sides disagree on the curve");
   }
 }

@@ -8,16 +8,17 @@
 
 namespace hybrid_quad {
 
-/// A 2-manifold complex of quadrilaterals whose edges are darts, never vertex pairs: dart d = 4 q + i runs along side i
-/// of quad q from corner i to corner i + 1. Always manifold by construction (GUARANTEE 1), whatever an indexed mesh could
-/// hold: faces may meet themselves, share two edges, and vertices may have any valence.
+/// A 2-manifold complex of quadrilaterals whose edges are darts, never vertex pairs: dart d = 4 q + i runs
+/// along side i of quad q from corner i to corner i + 1. Always manifold by construction (GUARANTEE 1),
+/// whatever an indexed mesh could hold: faces may meet themselves, share two edges, and vertices may have any
+/// valence.
 struct QuadComplex {
-  std::vector<int> opposite;        ///< 4 #Q: the dart on the other side, -1 on the boundary
-  std::vector<int> vertex;          ///< 4 #Q: origin of the dart
-  std::vector<int> curve;           ///< 4 #Q: feature curve the side lies on, or -1 (same on both sides)
-  std::vector<Vector3> positions;   ///< #V
-  std::vector<VertexKind> kind;     ///< #V
-  std::vector<int> anchor;          ///< #V, as in QuadMesh
+  std::vector<int> opposite;       ///< 4 #Q: the dart on the other side, -1 on the boundary
+  std::vector<int> vertex;         ///< 4 #Q: origin of the dart
+  std::vector<int> curve;          ///< 4 #Q: feature curve the side lies on, or -1 (same on both sides)
+  std::vector<Vector3> positions;  ///< #V
+  std::vector<VertexKind> kind;    ///< #V
+  std::vector<int> anchor;         ///< #V, as in QuadMesh
 
   int quad_count() const { return static_cast<int>(opposite.size()) / 4; }
   static int next(int d) { return (d & ~3) | ((d + 1) & 3); }
@@ -26,11 +27,13 @@ struct QuadComplex {
   int to(int d) const { return vertex[next(d)]; }
 };
 
-/// The complex of an indexed quad list: sides with the same two vertices are glued, all vertices free (anchor 0), no curves.
-/// \throws InternalError if a side is used twice in the same direction, or by more than two quads
+/// The complex of an indexed quad list: sides with the same two vertices are glued, all vertices free (anchor
+/// 0), no curves. \throws InternalError if a side is used twice in the same direction, or by more than two
+/// quads
 QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<std::array<int, 4>>& quads);
 
-/// The vertices of a gluing: for each dart the number of its origin, numbered 0.. in the order of their first darts.
+/// The vertices of a gluing: for each dart the number of its origin, numbered 0.. in the order of their first
+/// darts.
 std::vector<int> vertex_orbits(const std::vector<int>& opposite);
 
 /// V - E + F, vertices no quad uses not counted.
@@ -40,21 +43,21 @@ int euler_characteristic(const QuadComplex& complex);
 std::vector<std::string> violations_of(const QuadComplex& complex);
 
 struct ComplexRepairReport {
-  int cancelled_singlets = 0;   ///< quads removed at inner vertices of valence 1
-  int merged_doublets = 0;      ///< pairs of quads merged at inner vertices of valence 2
-  int inset_quads = 0;          ///< quads with a ring of four put around them where features forbid the two above
-  int restarred_edges = 0;      ///< double edges replaced by three quads around a new vertex
-  int split_polychords = 0;     ///< dual strips doubled to make room
+  int cancelled_singlets = 0;  ///< quads removed at inner vertices of valence 1
+  int merged_doublets = 0;     ///< pairs of quads merged at inner vertices of valence 2
+  int inset_quads = 0;      ///< quads with a ring of four put around them where features forbid the two above
+  int restarred_edges = 0;  ///< double edges replaced by three quads around a new vertex
+  int split_polychords = 0;  ///< dual strips doubled to make room
 };
 
-/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes inner valences 1 and 2, then double
-/// edges, edges that are loops and border loops shorter than four, by splitting polychords or, where a strip would be
-/// long, by a local change. Topology, feature chains and corners stay.
-/// \throws InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
+/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes inner valences 1 and 2,
+/// then double edges, edges that are loops and border loops shorter than four, by splitting polychords or,
+/// where a strip would be long, by a local change. Topology, feature chains and corners stay. \throws
+/// InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
 ComplexRepairReport repair_complex(QuadComplex& complex);
 
-/// Vertices and quads keep their numbers. A feature edge is listed once, in the direction of its dart of lower number.
-/// \pre no violation an indexed mesh could not hold (repair_complex)
+/// Vertices and quads keep their numbers. A feature edge is listed once, in the direction of its dart of
+/// lower number. \pre no violation an indexed mesh could not hold (repair_complex)
 QuadMesh to_quad_mesh(const QuadComplex& complex);
 
 }  // namespace hybrid_quad

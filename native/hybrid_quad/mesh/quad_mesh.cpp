@@ -11,12 +11,16 @@ namespace {
 struct Side {
   int low, high;  ///< its vertices
   int quad;
-  bool forward;   ///< runs from low to high
-  bool operator<(const Side& o) const { return std::tie(low, high, quad, forward) < std::tie(o.low, o.high, o.quad, o.forward); }
+  bool forward;  ///< runs from low to high
+  bool operator<(const Side& o) const {
+    return std::tie(low, high, quad, forward) < std::tie(o.low, o.high, o.quad, o.forward);
+  }
   bool same_edge(const Side& o) const { return low == o.low && high == o.high; }
 };
 
-std::string edge_name(const Side& s) { return "edge " + std::to_string(s.low) + "-" + std::to_string(s.high); }
+std::string edge_name(const Side& s) {
+  return "edge " + std::to_string(s.low) + "-" + std::to_string(s.high);
+}
 
 bool readable(const QuadMesh& mesh, std::vector<std::string>& found) {
   const int count = static_cast<int>(mesh.positions.size());
@@ -25,16 +29,20 @@ bool readable(const QuadMesh& mesh, std::vector<std::string>& found) {
   for (std::size_t q = 0; q < mesh.quads.size(); ++q) {
     std::array<int, 4> v = mesh.quads[q];
     std::sort(v.begin(), v.end());
-    if (v[0] < 0 || v[3] >= count) found.push_back("quad " + std::to_string(q) + " names a vertex that does not exist");
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[3]) found.push_back("quad " + std::to_string(q) + " repeats a vertex");
+    if (v[0] < 0 || v[3] >= count)
+      found.push_back("quad " + std::to_string(q) + " names a vertex that does not exist");
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[3])
+      found.push_back("quad " + std::to_string(q) + " repeats a vertex");
   }
   for (int v = 0; v < count; ++v)
     if (!mesh.positions[v].allFinite()) found.push_back("vertex " + std::to_string(v) + " is not finite");
   return found.empty();
 }
 
-/// One or two quads an edge, opposite in direction; no two quads with two common edges. Marks border vertices.
-void check_edges(const std::vector<Side>& sides, std::vector<char>& on_border, std::vector<std::string>& found) {
+/// One or two quads an edge, opposite in direction; no two quads with two common edges. Marks border
+/// vertices.
+void check_edges(const std::vector<Side>& sides, std::vector<char>& on_border,
+                 std::vector<std::string>& found) {
   std::vector<std::pair<int, int>> neighbours;  // pairs of quads with a common edge, once for each edge
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t j = i + 1;
@@ -52,8 +60,8 @@ void check_edges(const std::vector<Side>& sides, std::vector<char>& on_border, s
   std::sort(neighbours.begin(), neighbours.end());
   for (std::size_t i = 1; i < neighbours.size(); ++i)
     if (neighbours[i] == neighbours[i - 1])
-      found.push_back("quads " + std::to_string(neighbours[i].first) + " and " + std::to_string(neighbours[i].second) +
-                      " have two common edges");
+      found.push_back("quads " + std::to_string(neighbours[i].first) + " and " +
+                      std::to_string(neighbours[i].second) + " have two common edges");
 }
 
 /// The corners of every vertex, each as the edge (before, after) it turns between, must chain up to one fan.
@@ -78,11 +86,13 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
       found.push_back(name + " belongs to no quad");
       continue;
     }
-    if (!on_border[v] && valence < 3) found.push_back("interior " + name + " has " + std::to_string(valence) + " faces");
+    if (!on_border[v] && valence < 3)
+      found.push_back("interior " + name + " has " + std::to_string(valence) + " faces");
     const auto corner_from = [&](int before) {
       const auto at = std::lower_bound(corners.begin() + begin, corners.begin() + end, before,
                                        [](const Corner& c, int w) { return c.before < w; });
-      return at != corners.begin() + end && at->before == before ? static_cast<int>(at - corners.begin()) : -1;
+      return at != corners.begin() + end && at->before == before ? static_cast<int>(at - corners.begin())
+                                                                 : -1;
     };
     int start = begin;
     for (int c = begin; on_border[v] && c < end; ++c) {  // a border fan starts where nothing ends

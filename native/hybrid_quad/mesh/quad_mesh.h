@@ -16,16 +16,18 @@ struct QuadMesh {
   std::vector<Vector3> positions;
   std::vector<std::array<int, 4>> quads;
   std::vector<VertexKind> kind;  ///< #V
-  std::vector<int> anchor;       ///< #V: kFree: region (FeatureGraph::face_region); kCurve: curve id; kCorner: input vertex id
+  std::vector<int>
+      anchor;  ///< #V: kFree: region (FeatureGraph::face_region); kCurve: curve id; kCorner: input vertex id
   struct FeatureEdge {
     int a, b, curve;  ///< vertices in the direction of the curve
   };
   std::vector<FeatureEdge> feature_edges;  ///< chains that cover the feature curves, boundary included
 };
 
-/// Everything the result must satisfy as an indexed polygon mesh, checked by code that shares nothing with what built it:
-/// four distinct vertices a face, edges in one or two faces with opposite direction, one fan a vertex, no interior vertex
-/// with fewer than three faces, no two faces with two common edges, finite coordinates.
+/// Everything the result must satisfy as an indexed polygon mesh, checked by code that shares nothing with
+/// what built it: four distinct vertices a face, edges in one or two faces with opposite direction, one fan a
+/// vertex, no interior vertex with fewer than three faces, no two faces with two common edges, finite
+/// coordinates.
 std::vector<std::string> violations_of(const QuadMesh& mesh);
 
 }  // namespace hybrid_quad

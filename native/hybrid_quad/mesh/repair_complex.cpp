@@ -11,11 +11,12 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr int kFewQuads = 8;         // so few are never made fewer: a closed surface would vanish
-constexpr int kLocalRounds = 10;     // then polychords only
-constexpr int kSparingRounds = 25;   // then everything near a defect
+constexpr int kFewQuads = 8;        // so few are never made fewer: a closed surface would vanish
+constexpr int kLocalRounds = 10;    // then polychords only
+constexpr int kSparingRounds = 25;  // then everything near a defect
 constexpr int kMostRounds = 40;
-constexpr int kStripPerDefect = 8;   // a polychord is worth splitting up to this length for each double edge it resolves
+constexpr int kStripPerDefect =
+    8;  // a polychord is worth splitting up to this length for each double edge it resolves
 
 /// Inner vertices of one or two quads, by collapses first, then, where features forbid them, by rings.
 void fix_low_valences(QuadComplex& complex, ComplexRepairReport& report) {
@@ -45,9 +46,10 @@ void fix_low_valences(QuadComplex& complex, ComplexRepairReport& report) {
 
 /// What an indexed mesh cannot hold, once no inner valence is below three.
 struct Defects {
-  std::vector<std::vector<int>> double_edges;  ///< each: one dart for every edge between the same two vertices
-  std::vector<int> loop_edges;                 ///< darts from a vertex to itself
-  std::vector<std::vector<int>> short_borders; ///< border loops of fewer than four darts
+  std::vector<std::vector<int>>
+      double_edges;             ///< each: one dart for every edge between the same two vertices
+  std::vector<int> loop_edges;  ///< darts from a vertex to itself
+  std::vector<std::vector<int>> short_borders;  ///< border loops of fewer than four darts
   bool empty() const { return double_edges.empty() && loop_edges.empty() && short_borders.empty(); }
 };
 
@@ -94,7 +96,9 @@ Defects find_defects(const QuadComplex& c) {
 class PolychordChoice {
  public:
   PolychordChoice(const QuadComplex& complex, const Defects& defects)
-      : polychords_(trace_polychords(complex)), chosen_(polychords_.length.size(), 0), use_(polychords_.length.size(), 0) {
+      : polychords_(trace_polychords(complex)),
+        chosen_(polychords_.length.size(), 0),
+        use_(polychords_.length.size(), 0) {
     std::vector<int> last(use_.size(), -1);
     for (int g = 0; g < static_cast<int>(defects.double_edges.size()); ++g)
       for (const int d : defects.double_edges[g]) {
@@ -107,10 +111,12 @@ class PolychordChoice {
   void choose(int p) { chosen_[p] = 1; }
   void choose_at(int d) { choose(polychords_.of_dart[d]); }
 
-  /// All but one of these edges, cheapest strips first. \param any_length  whatever the length; otherwise only what is worth it
+  /// All but one of these edges, cheapest strips first. \param any_length  whatever the length; otherwise
+  /// only what is worth it
   void choose_for_double_edge(const std::vector<int>& darts, bool any_length) {
     std::vector<int> order = darts;
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return std::make_pair(price(a), a) < std::make_pair(price(b), b); });
+    std::sort(order.begin(), order.end(),
+              [&](int a, int b) { return std::make_pair(price(a), a) < std::make_pair(price(b), b); });
     int left = 0;
     for (const int d : order) left += !chosen_[polychords_.of_dart[d]];
     for (std::size_t i = 0; i < order.size() && left > 1; ++i) {
@@ -140,7 +146,9 @@ class PolychordChoice {
 
  private:
   int length(int d) const { return polychords_.length[polychords_.of_dart[d]]; }
-  double price(int d) const { return static_cast<double>(length(d)) / std::max(1, use_[polychords_.of_dart[d]]); }
+  double price(int d) const {
+    return static_cast<double>(length(d)) / std::max(1, use_[polychords_.of_dart[d]]);
+  }
 
   Polychords polychords_;
   std::vector<char> chosen_;
@@ -157,8 +165,8 @@ int restar_double_edges(QuadComplex& complex, const Defects& defects) {
     int best = -1, cost = std::numeric_limits<int>::max();
     for (const int edge : group)
       for (const int d : {edge, complex.opposite[edge]})
-        if (d >= 0 && !touched[d / 4] && complex.opposite[d] >= 0 && !touched[complex.opposite[d] / 4] && editor.can_restar(d) &&
-            editor.restar_valence_cost(d) < cost) {
+        if (d >= 0 && !touched[d / 4] && complex.opposite[d] >= 0 && !touched[complex.opposite[d] / 4] &&
+            editor.can_restar(d) && editor.restar_valence_cost(d) < cost) {
           best = d;
           cost = editor.restar_valence_cost(d);
         }
@@ -201,7 +209,8 @@ ComplexRepairReport repair_complex(QuadComplex& complex) {
     }
     report.split_polychords += split;
   }
-  if (!find_defects(complex).empty()) throw InternalError("repair", "a complex could not be made an indexed mesh");
+  if (!find_defects(complex).empty())
+    throw InternalError("repair", "a complex could not be made an indexed mesh");
   return report;
 }
 

@@ -14,8 +14,8 @@ namespace hybrid_quad {
 namespace {
 
 constexpr std::size_t kMostPolygonCorners = 16;  // fill_disk grows with a high power of it
-constexpr double kWorstCostOfAQuad = 3.0;        // of a directly filled disk; beyond it lies a fold or a huge quad
-constexpr double kMostQuadsForShape = 8.0;       // times the wanted number: then size goes before shape
+constexpr double kWorstCostOfAQuad = 3.0;   // of a directly filled disk; beyond it lies a fold or a huge quad
+constexpr double kMostQuadsForShape = 8.0;  // times the wanted number: then size goes before shape
 
 /// Unit normal of the surface at vertex v.
 Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
@@ -31,10 +31,12 @@ Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
 
 /// Whether a patch is a disk (one piece, one border loop) with few enough arcs for a direct fill.
 bool is_small_disk(const PatchSurface& patch, const PatchBorder& border) {
-  return border.size() == 1 && border[0].size() <= kMostPolygonCorners && patch.mesh.euler_characteristic() == 1;
+  return border.size() == 1 && border[0].size() <= kMostPolygonCorners &&
+         patch.mesh.euler_characteristic() == 1;
 }
 
-/// A disk as few quads with its nodes as corners. \return no quads where they would be bad: folded, or far too large
+/// A disk as few quads with its nodes as corners. \return no quads where they would be bad: folded, or far
+/// too large
 PatchQuads fill_small_disk(const PatchSurface& patch, const std::vector<PatchArc>& loop) {
   BorderPolygon polygon;
   double perimeter = 0;
@@ -47,7 +49,8 @@ PatchQuads fill_small_disk(const PatchSurface& patch, const std::vector<PatchArc
   polygon.target_length = patch.target_length > 0 ? patch.target_length : perimeter / corners;
   const DiskFill fill = fill_disk(polygon);
   PatchQuads result;
-  const double quads = static_cast<double>(fill.quads.size()), unit = polygon.target_length * polygon.target_length;
+  const double quads = static_cast<double>(fill.quads.size()),
+               unit = polygon.target_length * polygon.target_length;
   if (fill.cost > kWorstCostOfAQuad * quads || patch.mesh.total_area() > 3 * quads * unit) return result;
 
   QuadComplex complex = complex_of_quads(fill.positions, fill.quads);
@@ -62,7 +65,8 @@ PatchQuads fill_small_disk(const PatchSurface& patch, const std::vector<PatchArc
   return result;
 }
 
-/// Every triangle becomes three quads around its centroid. Vertices: the triangles' corners, then edges, then centroids.
+/// Every triangle becomes three quads around its centroid. Vertices: the triangles' corners, then edges, then
+/// centroids.
 PatchQuads split_into_quads(const CoarseTriangles& triangles, const PatchSurface& patch) {
   const int faces = triangles.face_count(), sides = 3 * faces;
   PatchQuads result;
@@ -82,7 +86,8 @@ PatchQuads split_into_quads(const CoarseTriangles& triangles, const PatchSurface
     const int passed = triangles.passed_node(h);
     const int vertex = passed < 0 ? -1 : triangles.passed_nodes()[passed].vertex;
     const auto& p = triangles.positions();
-    result.positions.push_back(vertex < 0 ? Vector3(0.5 * (p[triangles.from(h)] + p[triangles.to(h)])) : patch.mesh.position(vertex));
+    result.positions.push_back(vertex < 0 ? Vector3(0.5 * (p[triangles.from(h)] + p[triangles.to(h)]))
+                                          : patch.mesh.position(vertex));
     result.node.push_back(vertex < 0 ? -1 : patch.node[vertex]);
   }
   result.opposite.assign(4 * sides, -1);
@@ -131,12 +136,14 @@ PatchQuads combinatorial_fill(const PatchSurface& patch, const RunContext& conte
     }
   }
   context.checkpoint();
-  // Three quads a triangle of edge length l: each has 0.14 l^2. Collapses up to a length leave edges of 1 to 2 times it.
+  // Three quads a triangle of edge length l: each has 0.14 l^2. Collapses up to a length leave edges of 1 to
+  // 2 times it.
   const double h = patch.target_length > 0 ? patch.target_length : 4 * patch.mesh.mean_edge_length();
   CoarseTriangles triangles(patch, border);
   triangles.coarsen(1.5 * h, true, context);
   const double wanted = patch.mesh.total_area() / (h * h);
-  if (3 * triangles.alive_count() > kMostQuadsForShape * (wanted + static_cast<double>(triangles.passed_nodes().size())))
+  if (3 * triangles.alive_count() >
+      kMostQuadsForShape * (wanted + static_cast<double>(triangles.passed_nodes().size())))
     triangles.coarsen(h, false, context);
   triangles.flip_towards_six();
   triangles.smooth(surface, 3);

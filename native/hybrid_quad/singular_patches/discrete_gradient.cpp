@@ -15,8 +15,9 @@ void fan_of(const TriangleMesh& mesh, int v, std::vector<int>& halfedges) {
 
 namespace {
 
-/// Pairs the cells of one lower star. Its link is a set of chains (or the whole circle): in the first chain one edge is
-/// paired with the vertex, in every other one is critical, and from there each next edge is paired with the face before it.
+/// Pairs the cells of one lower star. Its link is a set of chains (or the whole circle): in the first chain
+/// one edge is paired with the vertex, in every other one is critical, and from there each next edge is
+/// paired with the face before it.
 class LowerStar {
  public:
   LowerStar(const TriangleMesh& mesh, const std::vector<int>& rank, DiscreteGradient& gradient)
@@ -49,7 +50,9 @@ class LowerStar {
   }
 
  private:
-  int far_end(int v, int i) const { return mesh_.from(fan_[i]) == v ? mesh_.to(fan_[i]) : mesh_.from(fan_[i]); }
+  int far_end(int v, int i) const {
+    return mesh_.from(fan_[i]) == v ? mesh_.to(fan_[i]) : mesh_.from(fan_[i]);
+  }
   bool same_edge(int g, int h) const { return g == h || (mesh_.opposite(g) == h); }
 
   /// Pairs the chain of edge `start` and takes it out of the star. \return edges taken
@@ -66,7 +69,7 @@ class LowerStar {
       i = j;
     }
     if (circle_) return taken;  // the face between the last edge and the first stays critical: a maximum
-    for (int i = start;;) {  // clockwise: edge j opens the face that edge i closes
+    for (int i = start;;) {     // clockwise: edge j opens the face that edge i closes
       const int j = i > 0 ? i - 1 : (closed_ ? count - 1 : -1);
       if (j < 0 || !lower_[j]) break;
       gradient_.up[mesh_.face_of(fan_[j])] = fan_[j];
@@ -87,7 +90,8 @@ class LowerStar {
 
 }  // namespace
 
-DiscreteGradient discrete_gradient(const TriangleMesh& mesh, const std::vector<int>& rank, const std::vector<int>& forced_descent) {
+DiscreteGradient discrete_gradient(const TriangleMesh& mesh, const std::vector<int>& rank,
+                                   const std::vector<int>& forced_descent) {
   DiscreteGradient gradient;
   gradient.down.assign(mesh.vertex_count(), -1);
   gradient.up.assign(mesh.face_count(), -1);

@@ -8,7 +8,8 @@ namespace hybrid_quad {
 
 namespace {
 
-/// One way to fill what a chord (i, j) cuts off: a piece next to the chord whose other sides are chords or border sides.
+/// One way to fill what a chord (i, j) cuts off: a piece next to the chord whose other sides are chords or
+/// border sides.
 struct Choice {
   double cost = std::numeric_limits<double>::infinity();
   std::vector<int> chain;  ///< the piece's corners from i to j
@@ -67,7 +68,8 @@ class PolygonFiller {
     for (int parity = 0; parity < 2; ++parity) {
       double cost = below + 0.3 * std::abs(corners / 2 - 4);
       for (int s = parity; s < corners + parity; s += 2)
-        cost += star_quad_cost(center, normal, chain_[s % corners], chain_[(s + 1) % corners], chain_[(s + 2) % corners]);
+        cost += star_quad_cost(center, normal, chain_[s % corners], chain_[(s + 1) % corners],
+                               chain_[(s + 2) % corners]);
       if (cost < choice.cost) choice = {cost, chain_, parity};
     }
   }
@@ -78,7 +80,8 @@ class PolygonFiller {
     return sum / static_cast<double>(chain.size());
   }
 
-  static double corner_cost(const Vector3& before, const Vector3& at, const Vector3& after, const Vector3& normal) {
+  static double corner_cost(const Vector3& before, const Vector3& at, const Vector3& after,
+                            const Vector3& normal) {
     const Vector3 a = after - at, b = before - at;
     const double length = normal.norm() * std::sqrt(a.squaredNorm() * b.squaredNorm());
     if (!(length > 0)) return 4;
@@ -89,7 +92,8 @@ class PolygonFiller {
   }
 
   double size_cost(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) const {
-    const double wanted = polygon_.target_length * polygon_.target_length, area = 0.5 * (c - a).cross(d - b).norm();
+    const double wanted = polygon_.target_length * polygon_.target_length,
+                 area = 0.5 * (c - a).cross(d - b).norm();
     const double ratio = std::log(std::max(area, 1e-3 * wanted) / wanted);
     return wanted > 0 ? 0.3 * ratio * ratio : 0;
   }
@@ -98,14 +102,16 @@ class PolygonFiller {
     const int v[4] = {a, b, c, d};
     const auto& p = polygon_.positions;
     double cost = size_cost(p[a], p[b], p[c], p[d]);
-    for (int i = 0; i < 4; ++i) cost += corner_cost(p[v[(i + 3) & 3]], p[v[i]], p[v[(i + 1) & 3]], polygon_.normals[v[i]]);
+    for (int i = 0; i < 4; ++i)
+      cost += corner_cost(p[v[(i + 3) & 3]], p[v[i]], p[v[(i + 1) & 3]], polygon_.normals[v[i]]);
     return cost;
   }
 
   double star_quad_cost(const Vector3& center, const Vector3& normal, int a, int b, int c) const {
     const auto& p = polygon_.positions;
     return size_cost(center, p[a], p[b], p[c]) + corner_cost(p[c], center, p[a], normal) +
-           corner_cost(center, p[a], p[b], polygon_.normals[a]) + corner_cost(p[a], p[b], p[c], polygon_.normals[b]) +
+           corner_cost(center, p[a], p[b], polygon_.normals[a]) +
+           corner_cost(p[a], p[b], p[c], polygon_.normals[b]) +
            corner_cost(p[b], p[c], center, polygon_.normals[c]);
   }
 
@@ -119,7 +125,8 @@ class PolygonFiller {
       const int center = static_cast<int>(fill.positions.size());
       fill.positions.push_back(center_of(chain));
       for (int s = choice.star; s < corners + choice.star; s += 2)
-        fill.quads.push_back({center, chain[s % corners], chain[(s + 1) % corners], chain[(s + 2) % corners]});
+        fill.quads.push_back(
+            {center, chain[s % corners], chain[(s + 1) % corners], chain[(s + 2) % corners]});
     }
     for (int k = 0; k + 1 < corners; ++k)
       if (chain[k + 1] - chain[k] > 1) emit(chain[k], chain[k + 1], fill);

@@ -23,7 +23,9 @@ void clean_values(PatchSurface& patch, const PatchBorder& border) {
     for (const PatchArc& arc : loop) {
       const int count = static_cast<int>(arc.halfedges.size());
       const double begin = patch.morse[arc.from], end = patch.morse[arc.to], sign = arc.rising ? 1 : -1;
-      const auto value_at = [&](int i) { return i < count ? patch.morse[patch.mesh.from(arc.halfedges[i])] : end; };
+      const auto value_at = [&](int i) {
+        return i < count ? patch.morse[patch.mesh.from(arc.halfedges[i])] : end;
+      };
       bool monotone = true;
       for (int i = 0; i < count; ++i) monotone = monotone && sign * (value_at(i + 1) - value_at(i)) > 0;
       for (int i = 1; i < count && !monotone; ++i)
@@ -31,8 +33,8 @@ void clean_values(PatchSurface& patch, const PatchBorder& border) {
     }
 }
 
-/// The order of the vertices: by value, ties by number; border minima before and border maxima after all others, which
-/// makes them extrema of the patch (paper, App. A).
+/// The order of the vertices: by value, ties by number; border minima before and border maxima after all
+/// others, which makes them extrema of the patch (paper, App. A).
 std::vector<int> rank_vertices(const PatchSurface& patch, const PatchBorder& border) {
   std::vector<signed char> level(patch.mesh.vertex_count(), 0);
   for (const auto& loop : border)
@@ -47,7 +49,8 @@ std::vector<int> rank_vertices(const PatchSurface& patch, const PatchBorder& bor
   return rank;
 }
 
-/// Along arcs the gradient follows the border, so that each arc is one side of one quad whatever the values inside do.
+/// Along arcs the gradient follows the border, so that each arc is one side of one quad whatever the values
+/// inside do.
 std::vector<int> descents_along(const PatchSurface& patch, const PatchBorder& border) {
   std::vector<int> forced(patch.mesh.vertex_count(), -1);
   for (const auto& loop : border)
@@ -62,7 +65,8 @@ std::vector<int> descents_along(const PatchSurface& patch, const PatchBorder& bo
 /// Cancels saddles with extrema on the glued quads.
 class Simplifier {
  public:
-  Simplifier(MorseSmaleComplex& complex, const std::vector<double>& morse) : saddle_(complex.saddle), editor_(complex.quads) {
+  Simplifier(MorseSmaleComplex& complex, const std::vector<double>& morse)
+      : saddle_(complex.saddle), editor_(complex.quads) {
     for (const int v : complex.extremum) value_.push_back(morse[v]);
   }
 
@@ -104,7 +108,8 @@ class Simplifier {
     const int p = quads().from(d ^ 1), r = quads().from(d ^ 3);
     const auto enough = [](bool border, int corners) { return corners >= (border ? 1 : 3); };
     const int lost = p == r ? 2 : 1;
-    return enough(editor_.on_border(a) || editor_.on_border(b), editor_.corner_count(a) + editor_.corner_count(b) - 2) &&
+    return enough(editor_.on_border(a) || editor_.on_border(b),
+                  editor_.corner_count(a) + editor_.corner_count(b) - 2) &&
            enough(editor_.on_border(p), editor_.corner_count(p) - lost) &&
            enough(editor_.on_border(r), editor_.corner_count(r) - lost);
   }
@@ -113,7 +118,8 @@ class Simplifier {
     std::vector<std::pair<double, int>> candidates;
     for (int q = 0; q < quads().quad_count(); ++q)
       for (const int d : {4 * q, 4 * q + 1})
-        if (editor_.alive(q) && persistence_of(d) < persistence && may_cancel(d)) candidates.emplace_back(persistence_of(d), d);
+        if (editor_.alive(q) && persistence_of(d) < persistence && may_cancel(d))
+          candidates.emplace_back(persistence_of(d), d);
     std::sort(candidates.begin(), candidates.end());
     bool changed = false;
     for (const auto& [expected, d] : candidates) {
@@ -147,7 +153,8 @@ PatchQuads export_quads(const QuadComplex& complex) {
   for (std::size_t v = 0; v < complex.kind.size(); ++v)
     result.node.push_back(complex.kind[v] == VertexKind::kCorner ? complex.anchor[v] : -1);
   for (int d = 0; d < static_cast<int>(complex.vertex.size()); d += 4)
-    result.quads.push_back({complex.vertex[d], complex.vertex[d + 1], complex.vertex[d + 2], complex.vertex[d + 3]});
+    result.quads.push_back(
+        {complex.vertex[d], complex.vertex[d + 1], complex.vertex[d + 2], complex.vertex[d + 3]});
   return result;
 }
 

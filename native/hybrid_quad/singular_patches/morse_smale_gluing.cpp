@@ -6,11 +6,17 @@ namespace hybrid_quad {
 
 namespace {
 
-/// Maxima by faces: every face flows, over the edge it is paired with, to a critical face or out of the border.
+/// Maxima by faces: every face flows, over the edge it is paired with, to a critical face or out of the
+/// border.
 class Ascent {
  public:
-  Ascent(const TriangleMesh& mesh, const PatchBorder& border, const std::vector<int>& rank, const DiscreteGradient& gradient)
-      : mesh_(mesh), rank_(rank), gradient_(gradient), border_top_(mesh.halfedge_count(), -1), top_(mesh.face_count(), -1) {
+  Ascent(const TriangleMesh& mesh, const PatchBorder& border, const std::vector<int>& rank,
+         const DiscreteGradient& gradient)
+      : mesh_(mesh),
+        rank_(rank),
+        gradient_(gradient),
+        border_top_(mesh.halfedge_count(), -1),
+        top_(mesh.face_count(), -1) {
     for (const auto& loop : border)
       for (const PatchArc& arc : loop)
         for (const int h : arc.halfedges) border_top_[h] = arc.rising ? arc.to : arc.from;
@@ -48,11 +54,12 @@ class DescentTrees {
  public:
   DescentTrees(const TriangleMesh& mesh, const DiscreteGradient& gradient)
       : mesh_(mesh), gradient_(gradient), saddle_of_edge_(mesh.halfedge_count(), -1) {
-    for (std::size_t c = 0; c < gradient.critical_edges.size(); ++c) saddle_of_edge_[gradient.critical_edges[c]] = static_cast<int>(c);
+    for (std::size_t c = 0; c < gradient.critical_edges.size(); ++c)
+      saddle_of_edge_[gradient.critical_edges[c]] = static_cast<int>(c);
   }
 
-  /// The corners (darts of the quads) at a minimum, counterclockwise; from the first border edge to the last where it is
-  /// on the border.
+  /// The corners (darts of the quads) at a minimum, counterclockwise; from the first border edge to the last
+  /// where it is on the border.
   const std::vector<int>& corners_at(int minimum) {
     corners_.clear();
     pending_.assign(1, {minimum, -1});
@@ -109,7 +116,8 @@ int add_vertex(MorseSmaleComplex& result, const PatchSurface& patch, int v) {
 }
 
 /// Glues the sides left and right of the paths that arrive at minimum m, in order.
-void glue_at_minimum(MorseSmaleComplex& result, const PatchSurface& patch, int m, const std::vector<int>& corners) {
+void glue_at_minimum(MorseSmaleComplex& result, const PatchSurface& patch, int m,
+                     const std::vector<int>& corners) {
   if (corners.empty()) return;
   QuadComplex& quads = result.quads;
   const int vertex = add_vertex(result, patch, m);
@@ -141,15 +149,17 @@ void name_maxima(MorseSmaleComplex& result, const PatchSurface& patch, const std
       if (number[maximum] >= 0) throw InternalError("morse-smale", "a maximum has two fans of quads");
       vertex = number[maximum] = add_vertex(result, patch, maximum);
     }
-    if (result.extremum[vertex] != maximum) throw InternalError("morse-smale", "ascending paths of one fan end at two maxima");
+    if (result.extremum[vertex] != maximum)
+      throw InternalError("morse-smale", "ascending paths of one fan end at two maxima");
     quads.vertex[d] = vertex;
   }
 }
 
 }  // namespace
 
-MorseSmaleComplex morse_smale_complex(const PatchSurface& patch, const PatchBorder& border, const std::vector<int>& rank,
-                                      const DiscreteGradient& gradient, const RunContext& context) {
+MorseSmaleComplex morse_smale_complex(const PatchSurface& patch, const PatchBorder& border,
+                                      const std::vector<int>& rank, const DiscreteGradient& gradient,
+                                      const RunContext& context) {
   const TriangleMesh& mesh = patch.mesh;
   MorseSmaleComplex result;
   const std::size_t darts = 4 * gradient.critical_edges.size();
@@ -163,7 +173,8 @@ MorseSmaleComplex morse_smale_complex(const PatchSurface& patch, const PatchBord
     if (gradient.down[v] < 0 && mesh.outgoing(v) >= 0) glue_at_minimum(result, patch, v, trees.corners_at(v));
   }
   for (std::size_t d = 0; d < darts; d += 2)
-    if (result.quads.vertex[d] < 0) throw InternalError("morse-smale", "a descending path ends at no minimum");
+    if (result.quads.vertex[d] < 0)
+      throw InternalError("morse-smale", "a descending path ends at no minimum");
 
   Ascent ascent(mesh, border, rank, gradient);
   std::vector<int> reached;  // by odd corner
@@ -171,7 +182,8 @@ MorseSmaleComplex morse_smale_complex(const PatchSurface& patch, const PatchBord
     if (mesh.is_boundary(e)) throw InternalError("morse-smale", "a saddle lies on the border");
     reached.push_back(ascent.from_side(mesh.opposite(e)));
     reached.push_back(ascent.from_side(e));
-    result.saddle.push_back(rank[mesh.from(e)] > rank[mesh.to(e)] ? patch.morse[mesh.from(e)] : patch.morse[mesh.to(e)]);
+    result.saddle.push_back(rank[mesh.from(e)] > rank[mesh.to(e)] ? patch.morse[mesh.from(e)]
+                                                                  : patch.morse[mesh.to(e)]);
   }
   name_maxima(result, patch, reached);
   return result;

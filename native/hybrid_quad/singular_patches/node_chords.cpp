@@ -16,8 +16,8 @@ struct Triangles {
     if (h >= 0) opposite[h] = g;
   }
 
-  /// Cuts face f in two from the middle `v` of its side h to its far corner. The half of side h nearer its origin stays
-  /// where it is. \return the half-edge of the other half
+  /// Cuts face f in two from the middle `v` of its side h to its far corner. The half of side h nearer its
+  /// origin stays where it is. \return the half-edge of the other half
   int cut(int h, int v) {
     const int f = h / 3, i = h % 3, j = (i + 1) % 3, k = (i + 2) % 3;
     const std::array<int, 3> old = faces[f];
@@ -52,7 +52,8 @@ PatchSurface split_node_chords(const PatchSurface& patch) {
   result.target_length = patch.target_length;
   std::vector<Vector3> positions = mesh.positions();
   Triangles t{mesh.faces(), mesh.opposites(), patch.boundary_arc};
-  // A cut keeps the sides of its face under their numbers but for the one after the side it cuts: look chords up by ends.
+  // A cut keeps the sides of its face under their numbers but for the one after the side it cuts: look chords
+  // up by ends.
   std::vector<int> moved(mesh.halfedge_count());
   for (int h = 0; h < mesh.halfedge_count(); ++h) moved[h] = h;
   std::vector<int> home = moved;  // inverse, grows with the faces

@@ -24,20 +24,24 @@ PatchBorder border_of(const PatchSurface& patch) {
       PatchArc& arc = loop.back();
       arc.halfedges.push_back(h);
       arc.to = mesh.to(h);
-      if (patch.boundary_arc[h] != arc.id || arc.id < 0) throw InternalError("patch", "an arc changes its id between two nodes");
+      if (patch.boundary_arc[h] != arc.id || arc.id < 0)
+        throw InternalError("patch", "an arc changes its id between two nodes");
     }
     for (PatchArc& arc : loop) {
       arc.rising = patch.morse[arc.from] < patch.morse[arc.to];
       if ((patch.morse[arc.from] < 0) == (patch.morse[arc.to] < 0))
-        throw InternalError("patch", "arc " + std::to_string(arc.id) + " does not join a minimum and a maximum");
+        throw InternalError("patch",
+                            "arc " + std::to_string(arc.id) + " does not join a minimum and a maximum");
     }
-    if (loop.size() < 4 || loop.size() % 2 != 0) throw InternalError("patch", "a border loop has " + std::to_string(loop.size()) + " arcs");
+    if (loop.size() < 4 || loop.size() % 2 != 0)
+      throw InternalError("patch", "a border loop has " + std::to_string(loop.size()) + " arcs");
     loops.push_back(std::move(loop));
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (mesh.is_boundary(h) && !seen[h]) throw InternalError("patch", "a border loop has no node");
   std::sort(ids.begin(), ids.end());
-  if (std::adjacent_find(ids.begin(), ids.end()) != ids.end()) throw InternalError("patch", "two arcs have the same id");
+  if (std::adjacent_find(ids.begin(), ids.end()) != ids.end())
+    throw InternalError("patch", "two arcs have the same id");
   return loops;
 }
 

@@ -17,8 +17,8 @@ struct PatchArc {
 /// The border loops of a patch, each as its arcs in the order in which the border runs.
 using PatchBorder = std::vector<std::vector<PatchArc>>;
 
-/// \throws InternalError if an arc does not run between a minimum and a maximum, a loop has no node, an odd number of
-/// arcs or fewer than four, or two arcs share an id
+/// \throws InternalError if an arc does not run between a minimum and a maximum, a loop has no node, an odd
+/// number of arcs or fewer than four, or two arcs share an id
 PatchBorder border_of(const PatchSurface& patch);
 
 }  // namespace hybrid_quad

@@ -24,7 +24,9 @@ QuadComplex as_complex(const PatchQuads& quads) {
 struct ArcEnds {
   int arc, from, to, next_arc;
   bool operator<(const ArcEnds& o) const { return arc < o.arc; }
-  bool operator==(const ArcEnds& o) const { return arc == o.arc && from == o.from && to == o.to && next_arc == o.next_arc; }
+  bool operator==(const ArcEnds& o) const {
+    return arc == o.arc && from == o.from && to == o.to && next_arc == o.next_arc;
+  }
 };
 
 std::vector<ArcEnds> arcs_of(const PatchSurface& patch) {
@@ -33,7 +35,8 @@ std::vector<ArcEnds> arcs_of(const PatchSurface& patch) {
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     if (!mesh.is_boundary(h) || patch.node[mesh.from(h)] < 0) continue;
     int last = h;
-    for (int steps = 0; patch.node[mesh.to(last)] < 0 && steps < mesh.halfedge_count(); ++steps) last = mesh.outgoing(mesh.to(last));
+    for (int steps = 0; patch.node[mesh.to(last)] < 0 && steps < mesh.halfedge_count(); ++steps)
+      last = mesh.outgoing(mesh.to(last));
     ends.push_back({patch.boundary_arc[h], patch.node[mesh.from(h)], patch.node[mesh.to(last)],
                     patch.boundary_arc[mesh.outgoing(mesh.to(last))]});
   }
@@ -84,25 +87,28 @@ void check_shapes(const PatchQuads& quads, const QuadComplex& c, std::vector<std
       neighbours.emplace_back(std::min(d, c.opposite[d]) / 4, std::max(d, c.opposite[d]) / 4);
   }
   for (std::size_t v = 0; v < valence.size(); ++v) {
-    if (!border[v] && valence[v] < 3) found.push_back("inner vertex " + std::to_string(v) + " has " + std::to_string(valence[v]) + " faces");
+    if (!border[v] && valence[v] < 3)
+      found.push_back("inner vertex " + std::to_string(v) + " has " + std::to_string(valence[v]) + " faces");
   }
   for (std::size_t q = 0; q < quads.quads.size(); ++q) {
     std::array<int, 4> v = quads.quads[q];
     std::sort(v.begin(), v.end());
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[3]) found.push_back("quad " + std::to_string(q) + " repeats a vertex");
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[3])
+      found.push_back("quad " + std::to_string(q) + " repeats a vertex");
   }
   std::sort(neighbours.begin(), neighbours.end());
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     if (neighbours[i].first == neighbours[i].second || (i > 0 && neighbours[i] == neighbours[i - 1]))
-      found.push_back("quads " + std::to_string(neighbours[i].first) + " and " + std::to_string(neighbours[i].second) +
-                      " have two common edges");
+      found.push_back("quads " + std::to_string(neighbours[i].first) + " and " +
+                      std::to_string(neighbours[i].second) + " have two common edges");
 }
 
 }  // namespace
 
 std::vector<std::string> structural_violations_of(const PatchQuads& quads, const PatchSurface& patch) {
   const std::size_t darts = 4 * quads.quads.size();
-  if (quads.opposite.size() != darts || quads.arc.size() != darts || quads.node.size() != quads.positions.size())
+  if (quads.opposite.size() != darts || quads.arc.size() != darts ||
+      quads.node.size() != quads.positions.size())
     return {"arrays differ in length"};
   if (darts == 0) return {"no quads"};
   const QuadComplex c = as_complex(quads);
@@ -112,14 +118,19 @@ std::vector<std::string> structural_violations_of(const PatchQuads& quads, const
   std::vector<char> on_border(c.positions.size(), 0);
   for (std::size_t d = 0; d < darts; ++d) {
     if (quads.opposite[d] < 0) on_border[c.vertex[d]] = 1;
-    if ((quads.opposite[d] < 0) != (quads.arc[d] >= 0)) found.push_back("dart " + std::to_string(d) + ": arcs and border disagree");
+    if ((quads.opposite[d] < 0) != (quads.arc[d] >= 0))
+      found.push_back("dart " + std::to_string(d) + ": arcs and border disagree");
   }
   for (std::size_t v = 0; v < on_border.size(); ++v)
-    if ((quads.node[v] >= 0) != (on_border[v] != 0)) found.push_back("vertex " + std::to_string(v) + ": nodes and border disagree");
+    if ((quads.node[v] >= 0) != (on_border[v] != 0))
+      found.push_back("vertex " + std::to_string(v) + ": nodes and border disagree");
   if (arcs_of(patch) != arcs_of(quads, c)) found.push_back("the border is not the patch's");
   const int chi = euler_characteristic(c), wanted = patch.mesh.euler_characteristic();
-  if (chi != wanted) found.push_back("Euler characteristic " + std::to_string(chi) + ", not the patch's " + std::to_string(wanted));
-  if (piece_count(quads.opposite, 4) != piece_count(patch.mesh.opposites(), 3)) found.push_back("not as many pieces as the patch");
+  if (chi != wanted)
+    found.push_back("Euler characteristic " + std::to_string(chi) + ", not the patch's " +
+                    std::to_string(wanted));
+  if (piece_count(quads.opposite, 4) != piece_count(patch.mesh.opposites(), 3))
+    found.push_back("not as many pieces as the patch");
   return found;
 }
 

@@ -52,8 +52,10 @@ void CoarseTriangles::glue(int g, int h) {
 
 namespace {
 
-/// How far the nodes after arcs first, first + 2, ... reach across the line between their neighbours, into the patch above all.
-double bend_of(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const std::vector<PatchArc>& loop, int first) {
+/// How far the nodes after arcs first, first + 2, ... reach across the line between their neighbours, into
+/// the patch above all.
+double bend_of(const TriangleMesh& mesh, const std::vector<Vector3>& normals,
+               const std::vector<PatchArc>& loop, int first) {
   double bend = 0;
   const int arcs = static_cast<int>(loop.size());
   for (int k = first; k < arcs + first; k += 2) {
@@ -137,10 +139,12 @@ bool CoarseTriangles::can_collapse(int h) {
   return joined == 1;  // another edge between them would become a loop
 }
 
-bool CoarseTriangles::faces_outwards(const std::array<int, 3>& corners, const std::array<Vector3, 3>& p) const {
+bool CoarseTriangles::faces_outwards(const std::array<int, 3>& corners,
+                                     const std::array<Vector3, 3>& p) const {
   const Vector3 normal = area_normal(p[0], p[1], p[2]);
   const double area = normal.norm();
-  const double longest = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+  const double longest =
+      std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
   if (!(area > kNoArea * longest)) return true;
   for (const int v : corners)
     if (normal.dot(normals_[v]) < kLeastCosine * area) return false;
@@ -217,7 +221,8 @@ bool CoarseTriangles::can_flip(int h) const {
     const int x = faces_at_[v] + change - (on_border(v) ? 3 : 6);
     return x * x;
   };
-  if (off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1) >= off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0)) return false;
+  if (off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1) >= off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0))
+    return false;
   const Vector3 &pa = positions_[a], &pb = positions_[b], &pc = positions_[c], &pd = positions_[d];
   const Vector3 old = area_normal(pa, pb, pc) + area_normal(pb, pa, pd);
   const double least = 0.1 * old.squaredNorm();
@@ -236,8 +241,9 @@ void CoarseTriangles::flip(int h) {
   // A side of one of the two faces may be glued to another side of them: name it by its new place.
   const auto moved = [&](int e) { return e == h1 ? o2 : e == h2 ? h1 : e == o1 ? h2 : e == o2 ? o1 : e; };
   const int new_ca = moved(ca), new_ad = moved(ad), new_db = moved(db), new_bc = moved(bc);
-  for (const auto& [side, beyond, below] : {std::make_tuple(h1, new_ca, ca_below), std::make_tuple(h2, new_ad, ad_below),
-                                            std::make_tuple(o1, new_db, db_below), std::make_tuple(o2, new_bc, bc_below)}) {
+  for (const auto& [side, beyond, below] :
+       {std::make_tuple(h1, new_ca, ca_below), std::make_tuple(h2, new_ad, ad_below),
+        std::make_tuple(o1, new_db, db_below), std::make_tuple(o2, new_bc, bc_below)}) {
     glue(side, beyond);
     passed_[side] = below;
   }

@@ -8,17 +8,19 @@
 
 namespace hybrid_quad {
 
-/// Triangles glued by half-edge (3 f + i), vertices by number; two vertices may be joined by several edges. Kept by every
-/// operation: no edge is a loop, inner vertices keep three faces or more, border edges and vertices stay.
+/// Triangles glued by half-edge (3 f + i), vertices by number; two vertices may be joined by several edges.
+/// Kept by every operation: no edge is a loop, inner vertices keep three faces or more, border edges and
+/// vertices stay.
 class CoarseTriangles {
  public:
-  /// The patch's triangles inside a collar: a strip of triangles along every border loop whose outer border has every
-  /// other node (all maxima, or all minima) as its only vertices. So the border is right from the start and all vertices
-  /// of the patch are free. Of the two, the nodes passed over are those that reach less into the patch.
+  /// The patch's triangles inside a collar: a strip of triangles along every border loop whose outer border
+  /// has every other node (all maxima, or all minima) as its only vertices. So the border is right from the
+  /// start and all vertices of the patch are free. Of the two, the nodes passed over are those that reach
+  /// less into the patch.
   CoarseTriangles(const PatchSurface& patch, const PatchBorder& border);
 
-  /// Collapses edges shorter than `length`, shortest first. \param keep_shape  only where no face turns away from the
-  /// surface; without it, crumpled surfaces get coarse too
+  /// Collapses edges shorter than `length`, shortest first. \param keep_shape  only where no face turns away
+  /// from the surface; without it, crumpled surfaces get coarse too
   void coarsen(double length, bool keep_shape, const RunContext& context);
   /// Flips edges towards six faces at every vertex.
   void flip_towards_six();
@@ -55,7 +57,8 @@ class CoarseTriangles {
   double edge_length(int h) const { return (positions_[to(h)] - positions_[from(h)]).norm(); }
   /// Outgoing half-edges of an inner vertex, counterclockwise from h.
   void fan(int h, std::vector<int>& out) const;
-  /// Whether a face lies the way the surface does at its corners; faces with hardly any area (collars) may lie any way.
+  /// Whether a face lies the way the surface does at its corners; faces with hardly any area (collars) may
+  /// lie any way.
   bool faces_outwards(const std::array<int, 3>& corners, const std::array<Vector3, 3>& positions) const;
   bool can_collapse(int h);
   bool keeps_shape(int h, double longest);
@@ -64,11 +67,11 @@ class CoarseTriangles {
   void flip(int h);
 
   std::vector<int> vertex_, opposite_, passed_;
-  std::vector<char> alive_;             // #F
-  std::vector<int> faces_at_;           // #V
-  std::vector<int> border_vertex_;      // #V
+  std::vector<char> alive_;         // #F
+  std::vector<int> faces_at_;       // #V
+  std::vector<int> border_vertex_;  // #V
   std::vector<Vector3> positions_;
-  std::vector<Vector3> normals_;        // #V: of the surface
+  std::vector<Vector3> normals_;  // #V: of the surface
   std::vector<PassedNode> passed_nodes_;
   std::vector<int> fan_;
 };

@@ -11,10 +11,13 @@ namespace hybrid_quad::test {
 
 namespace {
 
-int pick(std::mt19937& random, int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); }
+int pick(std::mt19937& random, int count) {
+  return static_cast<int>(random() % static_cast<unsigned>(count));
+}
 double uniform(std::mt19937& random, double a, double b) { return a + (b - a) * (random() / 4294967296.0); }
 
-TriangleMesh without_unused(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
+TriangleMesh without_unused(const std::vector<Vector3>& positions,
+                            const std::vector<std::array<int, 3>>& faces) {
   std::vector<int> number(positions.size(), -1);
   std::vector<Vector3> kept;
   std::vector<std::array<int, 3>> renamed;
@@ -74,7 +77,8 @@ TriangleMesh shuffled(const TriangleMesh& mesh, int flips, std::mt19937& random)
     if (other == face_of.end()) continue;
     const int g = other->second;
     const int d = faces[g][0] + faces[g][1] + faces[g][2] - a - b;
-    if (c == d || face_of.count({c, d}) || face_of.count({d, c}) || valence[a] < 4 || valence[b] < 4) continue;
+    if (c == d || face_of.count({c, d}) || face_of.count({d, c}) || valence[a] < 4 || valence[b] < 4)
+      continue;
     face_of.erase({a, b});
     face_of.erase({b, a});
     faces[f] = {c, a, d};
@@ -142,11 +146,21 @@ PatchSurface random_patch(const TriangleMesh& mesh, Values values, std::mt19937&
     const Vector3& p = mesh.position(v);
     double value = 0;
     switch (values) {
-      case Values::kRandom: value = uniform(random, -1, 1); break;
-      case Values::kConstant: value = 0.25; break;
-      case Values::kWave: value = std::cos(fx * p.x()) * std::cos(fy * p.y()) * std::cos(fz * p.z()); break;
-      case Values::kFew: value = 0.5 * (pick(random, 3) - 1); break;
-      case Values::kWild: value = uniform(random, -3, 3); break;
+      case Values::kRandom:
+        value = uniform(random, -1, 1);
+        break;
+      case Values::kConstant:
+        value = 0.25;
+        break;
+      case Values::kWave:
+        value = std::cos(fx * p.x()) * std::cos(fy * p.y()) * std::cos(fz * p.z());
+        break;
+      case Values::kFew:
+        value = 0.5 * (pick(random, 3) - 1);
+        break;
+      case Values::kWild:
+        value = uniform(random, -3, 3);
+        break;
     }
     patch.morse.push_back(value);
   }
@@ -182,16 +196,36 @@ TriangleMesh random_surface(int family, std::mt19937& random) {
   const int n = 4 + pick(random, 12), m = 4 + pick(random, 12);
   TriangleMesh mesh;
   switch (family) {
-    case 0: mesh = flat_grid(n, m); break;
-    case 1: mesh = flat_grid(1 + pick(random, 2), 1 + pick(random, 3)); break;
-    case 2: mesh = icosphere(2 + pick(random, 2)); break;
-    case 3: mesh = torus(n, m); break;
-    case 4: mesh = open_cylinder(n, m); break;
-    case 5: mesh = double_torus(1 + pick(random, 4)); break;
-    case 6: mesh = punctured(flat_grid(n, m), 6, random); break;
-    case 7: mesh = punctured(icosphere(2 + pick(random, 2)), 4, random); break;
-    case 8: mesh = punctured(torus(n, m), 5, random); break;
-    default: mesh = punctured(double_torus(2 + pick(random, 3)), 6, random); break;
+    case 0:
+      mesh = flat_grid(n, m);
+      break;
+    case 1:
+      mesh = flat_grid(1 + pick(random, 2), 1 + pick(random, 3));
+      break;
+    case 2:
+      mesh = icosphere(2 + pick(random, 2));
+      break;
+    case 3:
+      mesh = torus(n, m);
+      break;
+    case 4:
+      mesh = open_cylinder(n, m);
+      break;
+    case 5:
+      mesh = double_torus(1 + pick(random, 4));
+      break;
+    case 6:
+      mesh = punctured(flat_grid(n, m), 6, random);
+      break;
+    case 7:
+      mesh = punctured(icosphere(2 + pick(random, 2)), 4, random);
+      break;
+    case 8:
+      mesh = punctured(torus(n, m), 5, random);
+      break;
+    default:
+      mesh = punctured(double_torus(2 + pick(random, 3)), 6, random);
+      break;
   }
   return pick(random, 2) ? shuffled(mesh, 2 * mesh.face_count(), random) : mesh;
 }

@@ -37,7 +37,8 @@ QuadComplex wrapped(int n, int m, bool rows_wrap) {
       const int di[4] = {0, 1, 1, 0}, dj[4] = {0, 0, 1, 1};
       for (int k = 0; k < 4; ++k) {
         const double angle = 2 * M_PI * (i + di[k]) / n, tube = 2 * M_PI * (j + dj[k]) / m;
-        origin[4 * q + k] = rows_wrap ? Vector3((2 + std::cos(tube)) * std::cos(angle), (2 + std::cos(tube)) * std::sin(angle), std::sin(tube))
+        origin[4 * q + k] = rows_wrap ? Vector3((2 + std::cos(tube)) * std::cos(angle),
+                                                (2 + std::cos(tube)) * std::sin(angle), std::sin(tube))
                                       : Vector3(std::cos(angle), std::sin(angle), j + dj[k]);
       }
     }
