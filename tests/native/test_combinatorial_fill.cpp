@@ -27,6 +27,14 @@ TEST(CombinatorialFill, NeverFails) {
     for (const double factor : {0.02, 1.0, 100.0}) {
       patch.target_length = factor * 4 * mesh.mean_edge_length();
       const PatchQuads quads = combinatorial_fill(patch, RunContext{});
+      QuadComplex complex;
+      complex.positions = quads.positions;
+      complex.opposite = quads.opposite;
+      for (const auto& q : quads.quads) complex.vertex.insert(complex.vertex.end(), q.begin(), q.end());
+      complex.curve.assign(quads.opposite.size(), -1);
+      complex.kind.assign(quads.positions.size(), VertexKind::kFree);
+      complex.anchor.assign(quads.positions.size(), 0);
+      EXPECT_TRUE(violations_of(to_quad_mesh(complex)).empty()) << joined(violations_of(to_quad_mesh(complex)));
       const auto found = violations_of(quads, patch);
       EXPECT_TRUE(found.empty()) << "seed " << seed << " family " << seed % kSurfaceFamilies << " factor "
                                  << factor << ": " << joined(found);

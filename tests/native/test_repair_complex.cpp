@@ -156,6 +156,8 @@ TEST(RepairComplex, AnyLocalChangeKeepsTheSurface) {
                                     : quad_tube(3, 3);
     const int chi = euler_characteristic(c);
     const std::size_t borders = border_loop_lengths(c).size();
+    if (seed % 3 == 0) mark_features(c, 8, [&](int d) { return d % 5 == 0; });
+    const Features features = features_of(c);
     ComplexEditor editor(c);
     for (int k = 0; k < 60; ++k) {
       const int d = static_cast<int>(random() % c.opposite.size());
@@ -165,7 +167,11 @@ TEST(RepairComplex, AnyLocalChangeKeepsTheSurface) {
           if (editor.can_collapse(d)) editor.collapse(d);
           break;
         case 1:
-          if (editor.can_restar(d)) editor.restar(d, 0);
+          if (editor.can_restar(d)) {
+            const int spared = c.to(d);
+            editor.restar(d, 0);
+            EXPECT_GE(editor.corner_count(spared), editor.on_border(spared) ? 1 : 3);
+          }
           break;
         default:
           if (k % 10 == 0) editor.inset(d / 4, 0);
@@ -175,6 +181,8 @@ TEST(RepairComplex, AnyLocalChangeKeepsTheSurface) {
     ASSERT_TRUE(violations_of(c).empty()) << seed << joined(violations_of(c));
     EXPECT_EQ(euler_characteristic(c), chi);
     EXPECT_EQ(border_loop_lengths(c).size(), borders);
+    EXPECT_EQ(features_of(c).edges, features.edges);
+    EXPECT_EQ(features_of(c).ends, features.ends);
     const ComplexEditor fresh(c);
     for (std::size_t v = 0; v < c.positions.size(); ++v) {
       EXPECT_EQ(editor.corner_count(static_cast<int>(v)), fresh.corner_count(static_cast<int>(v)));
