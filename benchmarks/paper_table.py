@@ -64,7 +64,7 @@ def main() -> int:
         outcome = min(outcomes, key=lambda each: each.seconds)
         lines.append(_line(row, outcome))
         good = good and not _worse(row, outcome)
-        print(lines[-1], file=sys.stderr, flush=True)
+        print(lines[-1], outcome.message, file=sys.stderr, flush=True)
     text = "\n".join(lines) + "\n"
     (arguments.out / "paper_table.md").write_text(text)
     print(text)

@@ -116,9 +116,13 @@ def _read_results(path: Path, build: str) -> dict[str, Outcome]:
     done = {}
     if path.exists():
         for line in path.read_text().splitlines():
-            row = json.loads(line)
+            try:
+                row = json.loads(line)
+            except ValueError:  # the last line of a sweep that was killed while it wrote
+                continue
+            name = row.pop("name")
             if row.pop("build") == build:
-                done[row.pop("name")] = Outcome(**row)
+                done[name] = Outcome(**row)
     return done
 
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 import hybrid_quad
-from hybrid_quad.core.mesh_arrays import Polygons, as_edges, as_polygons, as_vertices
+from hybrid_quad.core.mesh_arrays import Polygons, as_edges, as_polygons, as_vertices, surface_area
+from support import surfaces
 
 
 def test_arrays_and_lists_of_faces_mean_the_same():
@@ -48,3 +49,10 @@ def test_edges():
     assert as_edges(None).shape == (0, 2)
     assert as_edges([]).shape == (0, 2)
     assert as_edges({(3, 4)}).tolist() == [[3, 4]]
+
+
+def test_area():
+    vertices, faces = surfaces.mixed_polygons()
+    assert surface_area(vertices + 1e7, as_polygons(faces)) == pytest.approx(3 + 3 + 8)
+    assert surface_area(vertices, as_polygons([[0, 1, 99], [0, 1, 2]])) == pytest.approx(1)
+    assert surface_area(np.zeros((0, 3)), as_polygons([])) == 0

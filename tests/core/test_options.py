@@ -11,7 +11,7 @@ from hybrid_quad import RemeshOptions
         {"quads": 0},
         {"quads": 2.5},
         {"quads": True},
-        {"quads": 2**31},
+        {"quads": 10**7},
         {"edge_length": 0.0},
         {"edge_length": math.inf},
         {"edge_length": math.nan},

@@ -60,6 +60,12 @@ def test_marked_pairs_of_vertices_that_do_not_exist(edges):
         hybrid_quad.remesh(vertices, faces, sharp_edges=edges)
 
 
+def test_a_length_that_would_take_too_many_quads():
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(*surfaces.torus(), edge_length=1e-6)
+    assert caught.value.code == "too_many_quads"
+
+
 def fin():
     vertices, faces = surfaces.sphere(5)
     a, b = faces[0, :2]

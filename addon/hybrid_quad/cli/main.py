@@ -45,6 +45,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (Cancelled, KeyboardInterrupt) as error:
         say(f"{options.input}: {str(error) or 'cancelled'}; nothing was written")
         return exit_codes.CANCELLED
+    except MemoryError:
+        say(f"{options.input}: this machine has not enough memory for the run; nothing was written")
+        return exit_codes.BUG
     except Exception as error:
         kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
         say(

@@ -99,6 +99,25 @@ def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> Non
         )
 
 
+def surface_area(vertices: FloatArray, polygons: Polygons) -> float:
+    """Sum of the polygons' areas (their area vectors' lengths); those with a vertex that does not exist count nothing."""
+    filled = polygons.sizes > 0
+    if not len(vertices) or not filled.any():
+        return 0.0
+    exists = (polygons.vertices >= 0) & (polygons.vertices < len(vertices))
+    corners = vertices[np.where(exists, polygons.vertices, 0)]
+    starts = (np.cumsum(polygons.sizes) - polygons.sizes)[filled]
+    following = np.arange(1, len(corners) + 1)
+    following[starts + polygons.sizes[filled] - 1] = starts
+    # From each polygon's first corner, so that a place far from the origin costs no digits.
+    first = np.repeat(corners[starts], polygons.sizes[filled], axis=0)
+    with np.errstate(invalid="ignore", over="ignore"):
+        vectors = np.add.reduceat(np.cross(corners - first, corners[following] - first), starts, axis=0)
+        areas = 0.5 * np.linalg.norm(vectors, axis=1)
+    sound = np.logical_and.reduceat(exists, starts) & np.isfinite(areas)
+    return float(areas[sound].sum())
+
+
 def _edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:
     ordered = np.sort(edges.astype(np.int64), axis=1)
     keys: npt.NDArray[np.int64] = ordered[:, 0] * vertex_count + ordered[:, 1]

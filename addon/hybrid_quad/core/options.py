@@ -9,6 +9,9 @@ from typing import Any
 
 SOLVERS = ("multilevel", "eigen")
 
+# More would take more memory than a machine has, and is most often a length in the wrong unit.
+MOST_QUADS = 5_000_000
+
 
 @dataclass(frozen=True)
 class RemeshOptions:
@@ -43,8 +46,8 @@ class RemeshOptions:
 
     def __post_init__(self) -> None:
         _require(
-            _is_integer(self.quads) and 1 <= self.quads < 2**31,
-            f"quads must be a whole number >= 1, not {self.quads!r}",
+            _is_integer(self.quads) and 1 <= self.quads <= MOST_QUADS,
+            f"quads must be a whole number between 1 and {MOST_QUADS}, not {self.quads!r}",
         )
         _require(
             self.edge_length is None or (math.isfinite(self.edge_length) and self.edge_length > 0),

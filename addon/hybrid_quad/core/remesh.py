@@ -11,8 +11,19 @@ import numpy as np
 import numpy.typing as npt
 
 from . import native, report
-from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices, require_edges
-from .options import RemeshOptions
+from .errors import InputError
+from .mesh_arrays import (
+    FacesLike,
+    FloatArray,
+    IntArray,
+    Polygons,
+    as_edges,
+    as_polygons,
+    as_vertices,
+    require_edges,
+    surface_area,
+)
+from .options import MOST_QUADS, RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
 
 ProgressCallback = Callable[[str, float], object]
@@ -147,6 +158,7 @@ def remesh_with_options(
 
     points, polygons, marked = as_vertices(vertices), as_polygons(faces), as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
+    _require_enough_length(points, polygons, options)
     result = native.load().remesh(
         points,
         polygons.sizes,
@@ -159,6 +171,18 @@ def remesh_with_options(
     )
     result["report"] = report.finished(result["report"], options, __version__)
     return RemeshResult(**result)
+
+
+def _require_enough_length(points: FloatArray, polygons: Polygons, options: RemeshOptions) -> None:
+    if options.edge_length is None:
+        return
+    expected = surface_area(points, polygons) / options.edge_length**2
+    if expected > MOST_QUADS:
+        raise InputError(
+            "too_many_quads",
+            f"quads of edge length {options.edge_length:g} would be about {expected:.2g} on this surface, "
+            f"more than {MOST_QUADS}",
+        )
 
 
 def _snapshot_receiver(
