@@ -100,7 +100,7 @@ def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> Non
 
 
 def surface_area(vertices: FloatArray, polygons: Polygons) -> float:
-    """Sum of the polygons' areas (their area vectors' lengths); those with a vertex that does not exist count nothing."""
+    """Sum of the lengths of the polygons' area vectors; those with a vertex that does not exist count nothing."""
     filled = polygons.sizes > 0
     if not len(vertices) or not filled.any():
         return 0.0
