@@ -65,12 +65,12 @@ class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.object.hybrid_quad
-        row = layout.row(heading="Sharp by Angle", align=True)
+        row = layout.row(heading="By Angle", align=True)
         row.prop(settings, "use_sharp_angle", text="")
         angle = row.row()
         angle.active = settings.use_sharp_angle
         angle.prop(settings, "sharp_angle", text="")
-        column = layout.column(heading="Marked Edges")
+        column = layout.column(heading="Marked")
         column.prop(settings, "use_marked_sharp", text="Sharp")
         column.prop(settings, "use_seams", text="Seam")
         column.prop(settings, "use_feature_attribute", text="Attribute")

@@ -1,0 +1,190 @@
+"""The add-on in a real window: panel drawn, a run in the background, progress, one undo step, Esc.
+
+    xvfb-run -a -s "-screen 0 1600x1000x24" blender --factory-startup --enable-event-simulate -P run_in_window.py -- [FOLDER]
+
+Ends Blender with status 0 or 1. FOLDER receives pictures of the window.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parents[2] / "addon")))
+sys.path.insert(0, str(HERE.parent))
+
+import hybrid_quad  # noqa: E402
+from hybrid_quad.blender import panels  # noqa: E402
+from hybrid_quad.blender.operators import OBJECT_OT_hybrid_quad_remesh as Operator  # noqa: E402
+from scenes import add_sphere, faces_of  # noqa: E402
+
+PICTURES = sys.argv[sys.argv.index("--") + 1 :]
+LONG_RUN_QUADS = 150_000
+drawn: set[str] = set()
+
+
+def steps() -> Iterator[float]:
+    """The test; every number is a pause in seconds, in which Blender handles events."""
+    bpy.context.preferences.view.show_splash = False
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    watch_drawing()
+    hybrid_quad.register()
+    with in_view():
+        source = add_sphere(quads=500)
+        bpy.ops.ed.undo_push(message="sphere")
+    yield 0.5
+    yield from show_sidebar_tab()
+    expect("VIEW3D_PT_hybrid_quad" in drawn, "the panel is drawn")
+    expect("VIEW3D_PT_hybrid_quad_features" in drawn, "so is its part for features")
+    yield from take_picture("1_panel.png")
+
+    with in_view():
+        expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"}, "the run goes on in the background")
+        expect(not bpy.ops.object.hybrid_quad_remesh.poll(), "a second one cannot be started meanwhile")
+    yield from until_finished()
+    result = bpy.context.view_layer.objects.active
+    expect(result.name == "Sphere Quads" and {len(f) for f in faces_of(result)} == {4}, "the result is there")
+    expect(bpy.data.objects["Sphere"].hide_get(), "the source is hidden")
+    yield 0.5
+    expect("VIEW3D_PT_hybrid_quad_report" in drawn, "the result's report is drawn")
+    yield from take_picture("2_done.png")
+
+    with in_view():
+        bpy.ops.ed.undo()
+    yield 0.5
+    expect("Sphere Quads" not in bpy.data.objects, "one undo takes the result away")
+    source = bpy.data.objects["Sphere"]
+    expect(not source.hide_get(), "and shows the source again")
+
+    source.hybrid_quad.quads = LONG_RUN_QUADS
+    before = sorted(bpy.data.objects.keys()), sorted(bpy.data.meshes.keys())
+    with in_view():
+        bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT")
+    run = Operator.current_run
+    started = time.monotonic()
+    while run.fraction == 0 and time.monotonic() - started < 30:
+        yield 0.05
+    yield from take_picture("3_running.png")
+    expect(not run.is_finished, "the long run goes on")
+    press("ESC")
+    started = time.monotonic()
+    yield from until_finished()
+    expect(time.monotonic() - started < 5, "Esc ends it soon")
+    try:
+        run.result()
+        expect(False, "the run was cancelled")
+    except hybrid_quad.Cancelled:
+        pass
+    expect((sorted(bpy.data.objects.keys()), sorted(bpy.data.meshes.keys())) == before, "and nothing has changed")
+    with in_view():
+        expect(bpy.ops.object.hybrid_quad_remesh.poll(), "the next run can be started")
+    hybrid_quad.unregister()
+    yield 0.3
+
+
+def expect(truth: bool, what: str) -> None:
+    if not truth:
+        raise AssertionError(f"not so: {what}")
+    print(f"ok: {what}", flush=True)
+
+
+def view() -> tuple[bpy.types.Window, bpy.types.Area]:
+    window = bpy.context.window_manager.windows[0]
+    return window, next(area for area in window.screen.areas if area.type == "VIEW_3D")
+
+
+def in_view():
+    window, area = view()
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return bpy.context.temp_override(window=window, area=area, region=region)
+
+
+def press(key: str) -> None:
+    window, area = view()
+    x, y = area.x + area.width // 2, area.y + area.height // 2
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type=key, value=value, x=x, y=y)
+
+
+def watch_drawing() -> None:
+    for cls in panels.CLASSES:
+        cls.draw = watched(cls.draw, cls.__name__)
+
+
+def watched(original, name: str):
+    def draw(self, context):  # Blender counts the arguments
+        original(self, context)
+        drawn.add(name)
+
+    return draw
+
+
+def show_sidebar_tab() -> Iterator[float]:
+    _, area = view()
+    area.spaces[0].show_region_ui = True
+    yield 1.0
+    region = next(region for region in area.regions if region.type == "UI")
+    if hasattr(region, "active_panel_category"):  # from Blender 4.3 on
+        for _ in range(20):
+            try:
+                region.active_panel_category = "Hybrid Quad"
+                break
+            except (AttributeError, TypeError):  # before the first drawing
+                area.tag_redraw()
+                yield 0.3
+    else:  # the tabs stand along the right edge, ours is the last
+        window, _ = view()
+        for y in range(region.y + region.height - 20, region.y + region.height // 3, -25):
+            for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
+                window.event_simulate(type=kind, value=value, x=region.x + region.width - 12, y=y)
+                yield 0.1
+            if drawn:
+                break
+    yield 0.8
+
+
+def until_finished() -> Iterator[float]:
+    started = time.monotonic()
+    while Operator.current_run is not None:
+        expect_in_time = time.monotonic() - started < 60
+        if not expect_in_time:
+            raise AssertionError("the run does not end")
+        yield 0.05
+    yield 0.3
+
+
+def take_picture(name: str) -> Iterator[float]:
+    if PICTURES:
+        window, area = view()
+        with bpy.context.temp_override(window=window, area=area):
+            bpy.ops.screen.screenshot(filepath=str(Path(PICTURES[0]).resolve() / name))
+        yield 0.3
+
+
+def main() -> None:
+    test = steps()
+
+    def tick() -> float:
+        try:
+            return next(test)
+        except StopIteration:
+            status = 0
+        except BaseException:
+            traceback.print_exc()
+            status = 1
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+    bpy.app.timers.register(tick, first_interval=2.0)
+
+
+main()
