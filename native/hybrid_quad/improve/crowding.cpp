@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "hybrid_quad/improve/quad_moves.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -22,12 +24,33 @@ Vector3 mean_of_neighbours(const EditMesh& mesh, int v) {
   return sum / (2.0 * mesh.valence(v));
 }
 
+/// Mean squared sides of the quads a few rings around every quad.
+std::vector<double> size_around(const EditMesh& mesh, const std::vector<double>& own) {
+  constexpr int kRings = 4;
+  std::vector<double> around = own, at_vertex(mesh.vertex_count(), 0.0);
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      double sum = 0;
+      for (const int q : mesh.quads_at(v)) sum += around[q];
+      if (mesh.valence(v) > 0) at_vertex[v] = sum / mesh.valence(v);
+    }
+    for (int q = 0; q < mesh.quad_count(); ++q) {
+      const auto& v = mesh.quad(q);
+      around[q] = 0.25 * (at_vertex[v[0]] + at_vertex[v[1]] + at_vertex[v[2]] + at_vertex[v[3]]);
+    }
+  }
+  return around;
+}
+
 /// Free vertices of quads that are far smaller than those around, and of the quads beside them.
-std::vector<int> crowded_vertices(const Workpiece& piece, const Smoother& smoother) {
-  constexpr double kSmall = 0.08;  // of the area around
+std::vector<int> crowded_vertices(const Workpiece& piece) {
+  constexpr double kSmall = 0.08;  // of the squared side around
+  std::vector<double> own(piece.mesh.quad_count());
+  for (int q = 0; q < piece.mesh.quad_count(); ++q) own[q] = mean_square_side(piece.mesh, q);
+  const std::vector<double> around = size_around(piece.mesh, own);
   std::vector<char> crowded(piece.mesh.vertex_count(), 0);
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
-    if (piece.mesh.alive(q) && mean_square_side(piece.mesh, q) < kSmall * smoother.frame(q).area)
+    if (piece.mesh.alive(q) && own[q] < kSmall * around[q])
       for (const int v : piece.mesh.quad(q)) crowded[v] = 1;
   std::vector<int> vertices;
   for (int v = 0; v < piece.mesh.vertex_count(); ++v) {
@@ -39,11 +62,34 @@ std::vector<int> crowded_vertices(const Workpiece& piece, const Smoother& smooth
   return vertices;
 }
 
+/// Shrinks q to the diagonal whose valences suffer less, if they suffer by at most `most_cost`.
+bool collapse_cheaper_diagonal(Workpiece& piece, int q, double most_cost) {
+  Move best{Move::kCollapse, -1, 0};
+  double best_cost = most_cost;
+  for (const int corner : {0, 1}) {
+    const Move move{Move::kCollapse, q, corner};
+    Changed changed;
+    if (!may_move(piece.mesh, move, &changed)) continue;
+    const double before = changed.cost(piece.mesh);
+    const std::size_t mark = piece.mesh.mark();
+    make_move(piece.mesh, move);
+    const double cost = changed.cost(piece.mesh) - before;
+    piece.mesh.undo_to(mark);
+    if (cost <= best_cost) {
+      best_cost = cost;
+      best = move;
+    }
+  }
+  if (best.quad < 0) return false;
+  make_move(piece.mesh, best);
+  return true;
+}
+
 }  // namespace
 
-void spread_crowded(Workpiece& piece, const Smoother& smoother, const RunContext& context) {
+void spread_crowded(Workpiece& piece, const RunContext& context) {
   constexpr int kSweeps = 40;
-  const std::vector<int> vertices = crowded_vertices(piece, smoother);
+  const std::vector<int> vertices = crowded_vertices(piece);
   for (int sweep = 0; sweep < kSweeps && !vertices.empty(); ++sweep) {
     context.checkpoint();
     for (const int v : vertices) {
@@ -52,6 +98,24 @@ void spread_crowded(Workpiece& piece, const Smoother& smoother, const RunContext
       piece.mesh.positions[v] = point.position;
     }
   }
+}
+
+
+int remove_crowded(Workpiece& piece, const RunContext& context) {
+  constexpr double kSmall = 0.06;  // of the squared target side
+  constexpr double kMostCost = 2.5;
+  constexpr int kPasses = 20;
+  int removed = 0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    context.checkpoint();
+    const int before = removed;
+    for (int q = 0; q < piece.mesh.quad_count(); ++q)
+      if (piece.mesh.alive(q) && mean_square_side(piece.mesh, q) < kSmall * piece.h * piece.h)
+        removed += collapse_cheaper_diagonal(piece, q, kMostCost);
+    if (removed == before) break;
+  }
+  piece.mesh.forget_log();
+  return removed;
 }
 
 }  // namespace hybrid_quad

@@ -91,7 +91,7 @@ void put_back_where_worse(Workpiece& piece, const Smoother& smoother, const std:
 }  // namespace
 
 void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr double kLargestMove = 0.3;
+  constexpr double kLargestMove = 0.3;  // of an edge
   smoother.update_frames(false);
   const int n = piece.mesh.vertex_count();
   const std::vector<QuadOffset> offsets = all_offsets(piece, smoother, context);
@@ -107,7 +107,9 @@ void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& contex
   const std::vector<Vector3> kept = piece.mesh.positions;
   for (int v = 0; v < n; ++v) {
     if (!piece.mesh.is_free(v) || piece.mesh.valence(v) == 0 || !(weight[v] > 0)) continue;
-    const double limit = kLargestMove * piece.h, d = sum[v] / weight[v];
+    double area = 0;
+    for (const int q : piece.mesh.quads_at(v)) area += smoother.frame(q).area;
+    const double limit = kLargestMove * std::sqrt(area / piece.mesh.valence(v)), d = sum[v] / weight[v];
     piece.mesh.positions[v] += std::max(-limit, std::min(limit, d)) * smoother.vertex_normal(v);
   }
   smoother.update_frames(false);

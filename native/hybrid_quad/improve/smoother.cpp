@@ -84,23 +84,6 @@ void Smoother::update_frames(bool with_references) {
   std::vector<int> all(piece_.mesh.quad_count());
   std::iota(all.begin(), all.end(), 0);
   update_frames(all, with_references);
-  spread_areas();
-}
-
-void Smoother::spread_areas() {
-  constexpr int kRounds = 3;
-  std::vector<double> at_vertex(piece_.mesh.vertex_count(), 0.0);
-  for (int round = 0; round < kRounds; ++round) {
-    for (int v = 0; v < piece_.mesh.vertex_count(); ++v) {
-      double sum = 0;
-      for (const int q : piece_.mesh.quads_at(v)) sum += frames_[q].area;
-      if (piece_.mesh.valence(v) > 0) at_vertex[v] = sum / piece_.mesh.valence(v);
-    }
-    for (int q = 0; q < piece_.mesh.quad_count(); ++q) {
-      const auto& v = piece_.mesh.quad(q);
-      if (piece_.mesh.alive(q)) frames_[q].area = 0.25 * (at_vertex[v[0]] + at_vertex[v[1]] + at_vertex[v[2]] + at_vertex[v[3]]);
-    }
-  }
 }
 
 void Smoother::update_frames(const std::vector<int>& quads, bool with_references) {

@@ -39,8 +39,6 @@ class Smoother {
   void update_reference(int q);
   void update_shape(int q);
   void update_area(int q);
-  /// Areas of a few rings around, so that quads crowded in a spot have room to grow.
-  void spread_areas();
   bool is_tangled() const;
   double energy(int v, const Vector3& at) const;
   double energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const;

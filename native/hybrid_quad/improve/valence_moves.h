@@ -1,20 +1,13 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/improve/quad_moves.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
-
-/// How far the number of quads at a vertex is from what it should be: the squared difference to four inside; on a
-/// feature, sector by sector, to the number that the sector's angle asks for. A sector whose quads would be nearly
-/// straight (over 140 degrees each) costs 20 more, a vertex inside with fewer than three quads too.
-double valence_cost(const EditMesh& mesh, int v);
-/// True for a vertex one of whose quads cannot have a good shape whatever its vertices do.
-bool has_straight_corner(const EditMesh& mesh, int v);
 
 /// Sequences of up to three diagonal collapses and edge rotations where quads are straight at a feature, each kept only if
 /// the quads around are not worse afterwards (locally smoothed). \returns number of moves made

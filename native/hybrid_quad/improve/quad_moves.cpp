@@ -1,0 +1,146 @@
+#include "hybrid_quad/improve/quad_moves.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kStraight = 140 * M_PI / 180;
+
+/// Quads of the sector that begins at the feature edge to `start`, counterclockwise; 0 where no quad is there.
+int sector_size(const EditMesh& mesh, int v, int start) {
+  int q = -1;
+  for (const int other : mesh.quads_at(v))
+    if (mesh.quad(other)[(mesh.corner_of(other, v) + 1) & 3] == start) q = other;
+  int count = 0;
+  for (int left = mesh.valence(v); q >= 0 && left > 0; --left) {
+    ++count;
+    const int side = (mesh.corner_of(q, v) + 3) & 3;
+    if (mesh.is_feature(v, mesh.quad(q)[side])) break;
+    q = mesh.across(q, side);
+  }
+  return count;
+}
+
+bool neighbours(const EditMesh& mesh, int v, int w) { return v == w || mesh.has_edge(v, w); }
+
+bool may_collapse(const EditMesh& mesh, const Move& move, Changed* changed) {
+  int kept, gone;
+  if (!collapse_ends(mesh, move, &kept, &gone)) return false;
+  const auto& corners = mesh.quad(move.quad);
+  const int a = corners[(move.corner + 1) & 3], b = corners[(move.corner + 3) & 3];
+  if (mesh.valence(a) <= mesh.least_valence(a) || mesh.valence(b) <= mesh.least_valence(b)) return false;
+  if (mesh.is_free(kept) && mesh.anchor(kept) != mesh.anchor(gone)) return false;
+  for (const int q : mesh.quads_at(gone)) {
+    if (q != move.quad && mesh.corner_of(q, kept) >= 0) return false;
+    const int i = mesh.corner_of(q, gone);
+    for (const int w : {mesh.quad(q)[(i + 1) & 3], mesh.quad(q)[(i + 3) & 3]})
+      if (w != a && w != b && neighbours(mesh, w, kept)) return false;
+  }
+  changed->vertex = {kept, gone, a, b};
+  return true;
+}
+
+void collapse(EditMesh& mesh, const Move& move) {
+  int kept, gone;
+  collapse_ends(mesh, move, &kept, &gone);
+  const std::vector<int> around = mesh.quads_at(gone);
+  mesh.set_quad(move.quad, mesh.quad(move.quad), false);
+  for (const int q : around) {
+    if (q == move.quad) continue;
+    EditMesh::Quad corners = mesh.quad(q);
+    corners[mesh.corner_of(q, gone)] = kept;
+    mesh.set_quad(q, corners, true);
+  }
+}
+
+bool may_rotate(const EditMesh& mesh, const Move& move, Changed* changed) {
+  const auto& q = mesh.quad(move.quad);
+  const int b = q[move.corner], c = q[(move.corner + 1) & 3];
+  if (mesh.valence(b) <= mesh.least_valence(b) || mesh.valence(c) <= mesh.least_valence(c)) return false;
+  if (mesh.is_feature(b, c)) return false;
+  Hexagon hexagon;
+  if (!hexagon_of(mesh, move, &hexagon)) return false;
+  const int from = move.kind == Move::kRotateBack ? hexagon.a : hexagon.x;
+  const int to = move.kind == Move::kRotateBack ? hexagon.y : hexagon.d;
+  if (neighbours(mesh, from, to)) return false;
+  changed->vertex = {b, c, from, to};
+  return true;
+}
+
+void rotate(EditMesh& mesh, const Move& move) {
+  Hexagon h;
+  hexagon_of(mesh, move, &h);
+  const bool backwards = move.kind == Move::kRotateBack;
+  const EditMesh::Quad first = backwards ? EditMesh::Quad{h.a, h.b, h.x, h.y} : EditMesh::Quad{h.x, h.y, h.c, h.d};
+  const EditMesh::Quad second = backwards ? EditMesh::Quad{h.a, h.y, h.c, h.d} : EditMesh::Quad{h.x, h.d, h.a, h.b};
+  mesh.set_quad(move.quad, first, true);
+  mesh.set_quad(h.other, second, true);
+}
+
+}  // namespace
+
+double valence_cost(const EditMesh& mesh, int v) {
+  const int n = mesh.valence(v);
+  if (n == 0) return 0;
+  if (mesh.feature_links(v).empty()) {
+    const double difference = n - 4;
+    return difference * difference + (n < 3 ? 20 : 0) + (n > 5 ? 2 * (n - 5) : 0);
+  }
+  double cost = 0;
+  for (const EditMesh::FeatureLink& link : mesh.feature_links(v)) {
+    const int size = sector_size(mesh, v, link.vertex);
+    if (size == 0) continue;
+    const double difference = size - link.ideal;
+    cost += difference * difference;
+    if (link.angle > kStraight * size) cost += 20;
+  }
+  return cost;
+}
+
+bool has_straight_corner(const EditMesh& mesh, int v) {
+  if (mesh.valence(v) == 0) return false;
+  if (mesh.feature_links(v).empty()) return mesh.valence(v) < 3;
+  for (const EditMesh::FeatureLink& link : mesh.feature_links(v)) {
+    const int size = sector_size(mesh, v, link.vertex);
+    if (size > 0 && link.angle > kStraight * size) return true;
+  }
+  return false;
+}
+
+bool collapse_ends(const EditMesh& mesh, const Move& move, int* kept, int* gone) {
+  const auto& q = mesh.quad(move.quad);
+  *kept = q[move.corner];
+  *gone = q[(move.corner + 2) & 3];
+  const auto removable = [&](int v) { return mesh.is_free(v) && !mesh.on_boundary(v) && mesh.feature_links(v).empty(); };
+  if (!removable(*gone)) std::swap(*kept, *gone);
+  return removable(*gone);
+}
+
+bool hexagon_of(const EditMesh& mesh, const Move& move, Hexagon* hexagon) {
+  const auto& q = mesh.quad(move.quad);
+  const int other = mesh.across(move.quad, move.corner);
+  if (other < 0) return false;
+  const int b = q[move.corner], c = q[(move.corner + 1) & 3];
+  const int k = mesh.corner_of(other, c);
+  const auto& o = mesh.quad(other);
+  *hexagon = {q[(move.corner + 3) & 3], b, o[(k + 2) & 3], o[(k + 3) & 3], c, q[(move.corner + 2) & 3], other};
+  return true;
+}
+
+bool may_move(const EditMesh& mesh, const Move& move, Changed* changed) {
+  if (!mesh.alive(move.quad)) return false;
+  return move.kind == Move::kCollapse ? may_collapse(mesh, move, changed) : may_rotate(mesh, move, changed);
+}
+
+void make_move(EditMesh& mesh, const Move& move) {
+  if (move.kind == Move::kCollapse)
+    collapse(mesh, move);
+  else
+    rotate(mesh, move);
+}
+
+}  // namespace hybrid_quad
