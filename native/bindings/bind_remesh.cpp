@@ -92,6 +92,18 @@ py::dict dict_of_result(const RemeshResult& result) {
   return out;
 }
 
+/// What the core assumes where a caller says nothing; the Python options must say the same.
+py::dict default_options() {
+  const RemeshOptions options;
+  py::dict result;
+  result["quads"] = options.quads;
+  result["edge_length"] = options.edge_length;
+  result["sharp_angle"] = options.use_sharp_angle ? py::object(py::float_(options.sharp_angle)) : py::none();
+  result["solver"] = options.solver == PeriodicSolver::kMultilevel ? "multilevel" : "eigen";
+  result["seed"] = RunContext{}.seed;
+  return result;
+}
+
 RemeshResult run_without_gil(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
   const py::gil_scoped_release release;
   return remesh(soup, options, context);
@@ -100,6 +112,7 @@ RemeshResult run_without_gil(const PolygonSoup& soup, const RemeshOptions& optio
 }  // namespace
 
 void bind_remesh(py::module_& module, const ErrorTypes& errors) {
+  module.def("default_options", &default_options, "Defaults of the core's options, as keyword arguments of remesh.");
   module.def(
       "remesh",
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int quads,

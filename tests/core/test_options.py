@@ -3,6 +3,7 @@ import math
 import pytest
 
 from hybrid_quad import RemeshOptions
+from hybrid_quad.core import native
 
 
 @pytest.mark.parametrize(
@@ -29,6 +30,11 @@ from hybrid_quad import RemeshOptions
 def test_options_that_make_no_sense_are_refused_by_name(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         RemeshOptions(**wrong)
+
+
+def test_defaults_are_those_of_the_core():
+    ours, cores = RemeshOptions().for_native(), native.load().default_options()
+    assert cores == {name: ours[name] for name in cores}
 
 
 def test_native_arguments_carry_every_option():
