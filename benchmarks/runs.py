@@ -41,6 +41,7 @@ class Limits:
     """What a run may take before it is ended."""
 
     seconds: float = 300.0
+    grace_seconds: float = 10.0
     memory_mb: int = 8192
     judge_seconds: float = 600.0
 
@@ -49,7 +50,7 @@ class Limits:
 class Outcome:
     """What came of a run.
 
-    `status` is "valid", "invalid", "timeout", "crash", or the report's status where no mesh was made; `failed` names
+    `status` is "valid", "invalid", "timeout" (had to be killed), "crash", or the report's where no mesh was made; `failed` names
     the checks that failed, of the judge and of our own validation.
     """
 
@@ -91,7 +92,9 @@ def run_and_judge(
         old.unlink(missing_ok=True)
     command = [sys.executable, "-m", "hybrid_quad", "remesh", str(run.path), str(out), "--quads", str(run.quads)]
     command += [*SETTINGS[run.setting], "--threads", str(threads), "--report", str(report), "--quiet"]
-    measured = _measure(command, limits.seconds, limits.memory_mb)
+    # The run ends itself, and says in which stage; it is killed only if it does not.
+    command += ["--time-limit", str(limits.seconds)]
+    measured = _measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)
     outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():

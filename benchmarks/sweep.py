@@ -34,7 +34,7 @@ def main() -> int:
     done = {} if arguments.fresh else _read_results(out / "results.jsonl", build)
     missing = [run for run in runs if run.name not in done]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
-    limits = Limits(arguments.time_limit, arguments.memory_mb)
+    limits = Limits(seconds=arguments.time_limit, memory_mb=arguments.memory_mb)
     judge = None if arguments.no_judge else arguments.judge
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {

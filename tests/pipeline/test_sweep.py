@@ -50,7 +50,7 @@ def test_a_table_of_good_and_bad_runs_made_only_once(root, tmp_path):
 def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     big = obj(tmp_path / "big.obj", *surfaces.torus(300, 120))
     slow = sweep(root, tmp_path / "slow", big, "--quads", 8000, "--settings", "sharp", "--time-limit", 0.8)
-    assert (slow.returncode, rows(tmp_path / "slow")[0]["valid"]) == (1, "timeout")
+    assert (slow.returncode, rows(tmp_path / "slow")[0]["valid"]) == (1, "time_limit")
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 150)
     assert large.returncode == 1
     assert rows(tmp_path / "large")[0]["valid"] in ("crash", "internal_error")
