@@ -102,8 +102,8 @@ void spread_crowded(Workpiece& piece, const RunContext& context) {
 
 
 int remove_crowded(Workpiece& piece, const RunContext& context) {
-  constexpr double kSmall = 0.06;  // of the squared target side
-  constexpr double kMostCost = 2.5;
+  constexpr double kSmall = 0.1;  // of the squared target side
+  constexpr double kMostCost = 4;
   constexpr int kPasses = 20;
   int removed = 0;
   for (int pass = 0; pass < kPasses; ++pass) {

@@ -10,30 +10,47 @@
 
 namespace hybrid_quad {
 
+namespace {
+
+/// Connectivity in rounds: quads that crowd go, the rest is smoothed a little, then moves lower the valence cost. Fewer
+/// irregular vertices let more crowded quads go in the next round. \returns number of moves
+int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr int kRounds = 4, kSweeps = 5;
+  int moves = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const int removed = remove_crowded(piece, context);
+    if (round > 0 && removed == 0) break;
+    moves += removed;
+    spread_crowded(piece, context);
+    smoother.smooth(kSweeps, context);
+    moves += straighten_features(piece, smoother, context);
+    moves += open_straight_corners(piece, smoother, context);
+    moves += improve_valences(piece, smoother, context);
+  }
+  return moves;
+}
+
+}  // namespace
+
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context) {
   ImproveReport report;
   if (quads.quads.empty() || input.face_count() == 0) return report;
   constexpr double kCurvatureWeight = 20;
-  constexpr int kSweepsBefore = 5, kSweepsAfter = 6;
+  constexpr int kSweepsAfter = 6;
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return report;
-  const int tangled_at_start = static_cast<int>(tangled_quads(piece).size());
+  report.inverted_before = static_cast<int>(tangled_quads(piece).size());
   piece.bind_all();
-  report.inverted_before = tangled_at_start;
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
-  if (options.edit_connectivity) report.connectivity_moves += remove_crowded(piece, context);
-  spread_crowded(piece, context);
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
   Smoother smoother(piece, smoothing);
-  if (options.edit_connectivity) {
-    smoother.smooth(kSweepsBefore, context);
-    report.connectivity_moves += straighten_features(piece, smoother, context);
-    report.connectivity_moves += open_straight_corners(piece, smoother, context);
-    report.connectivity_moves += improve_valences(piece, smoother, context);
-  }
+  if (options.edit_connectivity)
+    report.connectivity_moves = edit_connectivity(piece, smoother, context);
+  else
+    spread_crowded(piece, context);
   smoother.smooth(options.smoothing_sweeps, context);
   if (options.edit_connectivity) {
     const int moves = improve_shapes(piece, smoother, context);
