@@ -50,8 +50,8 @@ class Limits:
 class Outcome:
     """What came of a run.
 
-    `status` is "valid", "invalid", "timeout" (had to be killed), "crash", or the report's where no mesh was made; `failed` names
-    the checks that failed, of the judge and of our own validation.
+    `status` is "valid", "invalid", "timeout" (had to be killed), "crash", or the report's where no mesh was made;
+    `failed` names the checks that failed, of the judge and of our own validation.
     """
 
     model: str
