@@ -63,7 +63,7 @@ def make_cad_part(path: str) -> None:
 def make_smooth_model(path: str) -> None:
     """Spot the cow: closed, smooth, no feature."""
     obj = _object_of_file("Spot", path)
-    obj.rotation_euler = (math.radians(90), 0, 0)
+    obj.rotation_euler = (math.radians(90), 0, math.radians(175))
     _shade_smooth(obj.data)
     obj.hybrid_quad.quads = 3000
     obj.hybrid_quad.use_sharp_angle = False

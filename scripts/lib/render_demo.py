@@ -89,8 +89,8 @@ def main() -> None:
     stage.add_wires(quads.vertices, quads.edges[~sharp], LINES, thin)
     stage.add_wires(quads.vertices, quads.edges[sharp], FEATURES, 1.2 * thin)
     fewer, more = irregular_vertices(len(quads.vertices), faces)
-    stage.add_balls(quads.vertices[fewer], FEWER, 0.17 * edge)
-    stage.add_balls(quads.vertices[more], MORE, 0.17 * edge)
+    stage.add_balls(quads.vertices[fewer], FEWER, 0.22 * edge)
+    stage.add_balls(quads.vertices[more], MORE, 0.22 * edge)
     pictures.append(stage.render(out / "result.png"))
     save_side_by_side(pictures, out / "overview.png")
 
@@ -131,8 +131,8 @@ def draw_field(stage: Stage, field: Snapshot, edge: float, path: Path) -> Path:
         stage.add_wires(ends, pairs, CROSS, 0.05 * edge)
     stage.add_wires(field.points, field.lines, FEATURES, 0.05 * edge)
     index = field.vertex_values["cone index"]
-    stage.add_balls(field.points[index > 0], FEWER, 0.2 * edge)
-    stage.add_balls(field.points[index < 0], MORE, 0.2 * edge)
+    stage.add_balls(field.points[index > 0], FEWER, 0.22 * edge)
+    stage.add_balls(field.points[index < 0], MORE, 0.22 * edge)
     return stage.render(path)
 
 
