@@ -77,7 +77,7 @@ TEST(RegularQuads, PatchesFillWhatIsNotRegular) {
     RegularQuads q = extract_regular_quads(s.surface, s.frames, s.param, RunContext{});
     EXPECT_TRUE(violations_of(q).empty());
     EXPECT_LT(q.side.size(), 80u);
-    const SingularPatches patches = fill_singular_patches(s.surface, s.param, q, PatchOptions{}, RunContext{});
+    const SingularPatches patches = fill_singular_patches(s.surface, s.frames, s.param, q, PatchOptions{}, RunContext{});
     const QuadComplex complex = assemble_quads(s.surface, q, patches);
     EXPECT_TRUE(violations_of(complex).empty());
     EXPECT_EQ(euler_characteristic(complex), 1);

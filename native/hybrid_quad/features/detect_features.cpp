@@ -23,6 +23,7 @@ class FeatureDetector {
   void mark_given_edges();
   void mark_by_angle(const RunContext& context);
   void continue_chains(const RunContext& context);
+  void drop_loose_ends();
   void drop_short_sets();
   std::vector<char> result() const;
 
@@ -41,6 +42,12 @@ class FeatureDetector {
   int straightest_weak_edge(int v, const Vector3& direction) const;
   void try_chain(int v, double longest);
   std::vector<int> connected_sets(std::vector<double>& set_length) const;
+  struct Branch {
+    double length = 0;
+    int tip = -1, root = -1;
+    std::vector<int> edges;
+  };
+  Branch branch_from(int tip) const;
 
   const TriangleMesh& mesh_;
   const FeatureOptions& options_;
@@ -203,6 +210,50 @@ void FeatureDetector::drop_short_sets() {
     if (by_angle_[h] && set_length[set_of[mesh_.from(h)]] < options_.minimum_length) by_angle_[h] = 0;
 }
 
+/// The chain of edges by angle from a loose end to the next junction, corner of marks, or other loose end.
+FeatureDetector::Branch FeatureDetector::branch_from(int tip) const {
+  Branch branch;
+  branch.tip = tip;
+  int v = tip, came = -1;
+  do {
+    int out = -1;
+    visit_edges_at(v, [&](int h) {
+      if (by_angle_[h] && !marked_[h] && h != came && opposite_or_self(h) != came) out = h;
+    });
+    if (out < 0) break;
+    branch.edges.push_back(out);
+    branch.length += mesh_.edge_length(out);
+    came = out;
+    v = mesh_.from(out) == v ? mesh_.to(out) : mesh_.from(out);
+  } while (feature_degree(v) == 2 && v != tip);
+  branch.root = v;
+  return branch;
+}
+
+/// Short twigs that end inside a region are noise of a sculpt or scan. The shortest at every junction goes first, so
+/// that a long crease keeps the better of two twigs at its end.
+void FeatureDetector::drop_loose_ends() {
+  if (!(options_.minimum_length > 0)) return;
+  for (bool changed = true; changed;) {
+    std::vector<Branch> twigs;
+    for (int v = 0; v < mesh_.vertex_count(); ++v) {
+      if (mesh_.outgoing(v) < 0 || feature_degree(v) != 1) continue;
+      Branch branch = branch_from(v);
+      if (!branch.edges.empty() && branch.length < options_.minimum_length && feature_degree(branch.root) > 2)
+        twigs.push_back(std::move(branch));
+    }
+    std::stable_sort(twigs.begin(), twigs.end(), [](const Branch& a, const Branch& b) { return a.length < b.length; });
+    std::vector<char> touched(twigs.empty() ? 0 : mesh_.vertex_count(), 0);
+    changed = false;
+    for (const Branch& twig : twigs) {
+      if (touched[twig.root]) continue;
+      touched[twig.root] = 1;
+      for (const int h : twig.edges) set(by_angle_, h, 0);
+      changed = true;
+    }
+  }
+}
+
 std::vector<char> FeatureDetector::result() const {
   std::vector<char> is_feature(mesh_.halfedge_count());
   for (int h = 0; h < mesh_.halfedge_count(); ++h) is_feature[h] = is_any(h);
@@ -216,6 +267,8 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
   detector.mark_given_edges();
   detector.mark_by_angle(context);
   detector.continue_chains(context);
+  detector.drop_short_sets();
+  detector.drop_loose_ends();
   detector.drop_short_sets();
   context.checkpoint(0.7);
   return trace_features(mesh, detector.result(), options.corner_angle);

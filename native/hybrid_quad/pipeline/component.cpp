@@ -136,7 +136,7 @@ class ComponentRemesher {
       return extract_regular_quads(surface_, sized.field, out.param, context_.in_stage("regular quads", 0.7, 0.76));
     });
     SingularPatches singular = clock_.measure("singular patches", [&] {
-      return fill_singular_patches(surface_, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
+      return fill_singular_patches(surface_, sized.field, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(regular, singular));
     out.mesh = clock_.measure("assemble", [&] {

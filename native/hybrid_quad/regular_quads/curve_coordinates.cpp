@@ -40,10 +40,64 @@ class CurveBuilder {
                CurveCoordinates& out)
       : surface_(surface), frames_(frames), param_(param), out_(out) {}
 
+  /// Gives every border loop of a region at least four quad edges, by more on its longest curve: nothing that an indexed
+  /// mesh can hold fits into fewer.
+  void widen_short_loops() {
+    constexpr std::int64_t kLeast = 4;
+    const TriangleMesh& mesh = surface_.mesh;
+    std::vector<char> seen(mesh.halfedge_count(), 0);
+    for (int seed = 0; seed < mesh.halfedge_count(); ++seed) {
+      if (seen[seed] || !surface_.features.is_feature(seed)) continue;
+      std::int64_t total = 0;
+      int longest = -1;
+      int h = seed;
+      do {
+        seen[h] = 1;
+        const int c = surface_.features.halfedge_curve[h];
+        // Every curve of the loop is met at its first edge once on each pass along it.
+        if (out_.halfedge_index[h] == 0) {
+          total += count_of(c);
+          if (longest < 0 || length_of(c) > length_of(longest)) longest = c;
+        }
+        int n = TriangleMesh::next(h);
+        while (!surface_.features.is_feature(n)) n = TriangleMesh::next(mesh.opposite(n));
+        h = n;
+      } while (h != seed);
+      if (total >= kLeast || longest < 0) continue;
+      const std::int64_t count = count_of(longest) + 2 * ((kLeast - total + 1) / 2);
+      locate_edges(longest);
+      auto& s = out_.curves[longest].position;
+      interpolate(s, 0, static_cast<int>(s.size()) - 1, s[0] + count * kGridUnit);
+      ++out_.altered_counts;
+    }
+  }
+
   void build(int id) {
     const FeatureCurve& curve = surface_.features.curves[id];
-    const int edges = static_cast<int>(curve.vertices.size()) - 1;
+    locate_edges(id);
+    const int edges = static_cast<int>(edges_.size());
     auto& result = out_.curves[id];
+    result.position.assign(edges + 1, 0);
+    start_of_curve(curve, result);
+    for (int i = 0; i < edges; ++i) result.position[i + 1] = result.position[i] + tangential(edges_[i], param_.halfedge_uv);
+    make_monotone(curve, result);
+  }
+
+ private:
+  std::int64_t count_of(int c) const { return (out_.curves[c].position.back() - out_.curves[c].position.front()) / kGridUnit; }
+
+  double length_of(int c) const {
+    const std::vector<int>& vertices = surface_.features.curves[c].vertices;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
+      sum += (surface_.mesh.position(vertices[i + 1]) - surface_.mesh.position(vertices[i])).norm();
+    return sum;
+  }
+
+  /// Finds the mesh edges of a curve and the arc length at its vertices.
+  void locate_edges(int id) {
+    const FeatureCurve& curve = surface_.features.curves[id];
+    const int edges = static_cast<int>(curve.vertices.size()) - 1;
     arc_length_.assign(edges + 1, 0.0);
     edges_.resize(edges);
     for (int i = 0; i < edges; ++i) {
@@ -53,13 +107,8 @@ class CurveBuilder {
       const int o = surface_.mesh.opposite(edges_[i].halfedge);
       if (o >= 0) out_.halfedge_index[o] = i;
     }
-    result.position.assign(edges + 1, 0);
-    start_of_curve(curve, result);
-    for (int i = 0; i < edges; ++i) result.position[i + 1] = result.position[i] + tangential(edges_[i], param_.halfedge_uv);
-    make_monotone(curve, result);
   }
 
- private:
   /// The axis (0 = u, 1 = v) that the curve follows in the gauge of the edge's face, and its sense along the curve.
   std::pair<int, int> axis_of(const CurveEdge& e) const {
     const Vector2 asked = frames_.grid_vector(surface_.mesh, e.halfedge) * (e.along ? 1.0 : -1.0);
@@ -153,6 +202,7 @@ CurveCoordinates build_curve_coordinates(const WorkingSurface& surface, const Fr
   out.is_altered.assign(surface.mesh.halfedge_count(), 0);
   CurveBuilder builder(surface, frames, param, out);
   for (int c = 0; c < static_cast<int>(out.curves.size()); ++c) builder.build(c);
+  builder.widen_short_loops();
   return out;
 }
 

@@ -35,8 +35,9 @@ std::array<double, 2> phase_step(const Vector2& duv) { return {kPi * (duv[0] + d
 class PatchCutter {
  public:
   PatchCutter(const GridOverlay& overlay, const SpanningParameterization& param, const WorkingSurface& surface,
-              const std::vector<int>& pieces)
-      : overlay_(overlay), param_(param), surface_(surface), pieces_(pieces) {}
+              const FrameField& frames, const std::vector<int>& pieces)
+      : overlay_(overlay), param_(param), surface_(surface), frames_(frames), pieces_(pieces),
+        target_length_(surface.target_length[overlay.piece_face[pieces.front()]]) {}
 
   PatchTriangles cut() {
     index_halfedges();
@@ -110,19 +111,37 @@ class PatchCutter {
     }
   }
 
-  /// What the step along an overlay half-edge should be: the chart's where the piece has one, else its share of the
-  /// surface half-edge's.
-  std::array<double, 2> wanted_step(int k) const {
+  /// A measure of an edge in quads, bounded by twice what its length asks for: where the parameterization stretches a
+  /// sliver over many quads, the patch must not follow.
+  Vector2 bounded(const Vector2& quads, const Vector3& from, const Vector3& to) const {
+    constexpr double kStretch = 2.0, kAlways = 0.25;
+    const double most = kStretch * (to - from).norm() / target_length_ + kAlways;
+    const double length = quads.norm();
+    return length > most ? Vector2(quads * (most / length)) : quads;
+  }
+
+  const Vector3& position(int k) const { return overlay_.vertices[overlay_.origin[k]].position; }
+
+  /// What the step along an overlay half-edge should be: the chart's where a face at it has one, else its share of what
+  /// the frames on its two sides ask for (the paper's connection), whatever integers were chosen there.
+  Vector2 wanted_step(int k) const {
     const int h = overlay_.surface_halfedge[k];
-    if (h < 0 || overlay_.piece_regular[overlay_.piece_of[k]]) {
-      const Vector2 d = overlay_.uv[overlay_.next(k)] - overlay_.uv[k];
-      return phase_step(d);
-    }
+    if (h < 0 || overlay_.piece_regular[overlay_.piece_of[k]]) return overlay_.uv[overlay_.next(k)] - overlay_.uv[k];
     const double length = surface_.mesh.edge_length(h);
-    const double part = (overlay_.vertices[overlay_.target(k)].position - overlay_.vertices[overlay_.origin[k]].position).norm();
-    const double share = length > 0 ? part / length : 0;
-    const GridVector& d = param_.halfedge_uv[h];
-    return phase_step(Vector2(static_cast<double>(d[0]), static_cast<double>(d[1])) * (share / kGridUnit));
+    const double share = length > 0 ? (position(overlay_.next(k)) - position(k)).norm() / length : 0;
+    const int o = overlay_.opposite[k];
+    if (o >= 0 && overlay_.piece_regular[overlay_.piece_of[o]]) {
+      const GridVector& d = param_.halfedge_uv[h];
+      return Vector2(static_cast<double>(d[0]), static_cast<double>(d[1])) * (share / kGridUnit);
+    }
+    Vector2 asked = frames_.grid_vector(surface_.mesh, h);
+    const int across = surface_.mesh.opposite(h);
+    if (across >= 0) asked = 0.5 * (asked - turned(frames_.grid_vector(surface_.mesh, across), frames_.matching[across]));
+    return asked * share;
+  }
+
+  std::array<double, 2> step_along(int k) const {
+    return phase_step(bounded(wanted_step(k), position(k), position(overlay_.next(k))));
   }
 
   void triangulate() {
@@ -136,7 +155,7 @@ class PatchCutter {
         for (int i = 0; i < 3; ++i)
           first_triangle_halfedge_[base + i] = 3 * static_cast<int>(out_.faces.size()) + i;
         add_triangle({corner_vertex_[base], corner_vertex_[base + 1], corner_vertex_[base + 2]}, {phase[0], phase[1], phase[2]},
-                     {wanted_step(begin), wanted_step(begin + 1), wanted_step(begin + 2)});
+                     {step_along(begin), step_along(begin + 1), step_along(begin + 2)});
         continue;
       }
       fan(piece, begin, n, base, phase);
@@ -166,7 +185,8 @@ class PatchCutter {
       const Vector2 in_step = regular ? Vector2(overlay_.uv[begin + i] - centre_uv) : Vector2(Vector2::Zero());
       first_triangle_halfedge_[base + i] = 3 * static_cast<int>(out_.faces.size());
       add_triangle({corner_vertex_[base + i], corner_vertex_[base + j], c}, {phase[i], phase[j], centre_phase},
-                   {wanted_step(begin + i), phase_step(out_step), phase_step(in_step)});
+                   {step_along(begin + i), phase_step(bounded(out_step, position(begin + j), centre)),
+                    phase_step(bounded(in_step, centre, position(begin + i)))});
     }
   }
 
@@ -234,7 +254,9 @@ class PatchCutter {
   const GridOverlay& overlay_;
   const SpanningParameterization& param_;
   const WorkingSurface& surface_;
+  const FrameField& frames_;
   const std::vector<int>& pieces_;
+  double target_length_;
   std::unordered_map<int, int> local_;  // overlay half-edge -> index into halfedges_; looked up, never iterated
   std::vector<int> halfedges_;
   std::vector<int> corner_vertex_;
@@ -245,8 +267,9 @@ class PatchCutter {
 }  // namespace
 
 PatchTriangles triangulate_patch(const GridOverlay& overlay, const SpanningParameterization& param,
-                                 const WorkingSurface& surface, const std::vector<int>& pieces) {
-  return PatchCutter(overlay, param, surface, pieces).cut();
+                                 const WorkingSurface& surface, const FrameField& frames,
+                                 const std::vector<int>& pieces) {
+  return PatchCutter(overlay, param, surface, frames, pieces).cut();
 }
 
 }  // namespace hybrid_quad

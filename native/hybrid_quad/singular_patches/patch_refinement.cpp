@@ -83,14 +83,21 @@ class RefinementRound {
 
   const Vector3& position(int h) const { return in_.positions[in_.faces[h / 3][h % 3]]; }
 
-  /// Where the old face's corner lies. A face around a vortex does not close: its third corner takes the mean.
+  /// Where the old face's corner lies, for a phase that closes around the face.
   Step local_corner(int h) const {
     const Step& ab = in_.step[h - h % 3];
     if (h % 3 == 0) return {0, 0};
     if (h % 3 == 1) return ab;
     const Step& bc = in_.step[h - h % 3 + 1];
-    const Step& ca = in_.step[h - h % 3 + 2];
-    return {(ab[0] + bc[0] - ca[0]) / 2, (ab[1] + bc[1] - ca[1]) / 2};
+    return {ab[0] + bc[0], ab[1] + bc[1]};
+  }
+
+  /// Around a vortex no local place is right: new sides then take the shortest step, which keeps the vortex in one part.
+  std::array<bool, 2> closes(int f) const {
+    std::array<bool, 2> out;
+    for (int c = 0; c < 2; ++c)
+      out[c] = std::abs(in_.step[3 * f][c] + in_.step[3 * f + 1][c] + in_.step[3 * f + 2][c]) < 1;
+    return out;
   }
 
   Point corner(int h) const { return {in_.faces[h / 3][h % 3], in_.phase[h], local_corner(h)}; }
@@ -110,7 +117,8 @@ class RefinementRound {
         const double part = marked_[from[i]] ? 0.5 : 1.0;
         step[i] = {part * in_.step[from[i]][0], part * in_.step[from[i]][1]};
       } else {
-        step[i] = between(p[i].phase, q.phase, {q.local[0] - p[i].local[0], q.local[1] - p[i].local[1]});
+        step[i] = between(p[i].phase, q.phase, {closes_[0] ? q.local[0] - p[i].local[0] : 0.0,
+                                                closes_[1] ? q.local[1] - p[i].local[1] : 0.0});
       }
     }
     for (int i = 0; i < 3; ++i) {
@@ -134,6 +142,7 @@ class RefinementRound {
   }
 
   void cut(int f) {
+    closes_ = closes(f);
     int marks = 0, first = 0;
     for (int i = 0; i < 3; ++i) marks += marked_[3 * f + i] != 0;
     if (marks == 0) {
@@ -176,6 +185,7 @@ class RefinementRound {
   const PatchTriangles& in_;
   const std::vector<char>& marked_;
   PatchTriangles out_;
+  std::array<bool, 2> closes_{true, true};  // of the face that is being cut
   std::vector<int> middle_;
   std::vector<std::array<int, 2>> halves_;
   std::vector<std::array<int, 2>> inner_;
@@ -186,6 +196,7 @@ class RefinementRound {
 void refine_patch(PatchTriangles& patch, double longest, double target_length, const RunContext& context) {
   constexpr int kRounds = 16;
   constexpr std::size_t kMostFaces = 4000000;
+  constexpr double kShortest = 0.05;  // quads; next to a vortex the phases turn fast at every scale
   for (int round = 0; round < kRounds && patch.faces.size() < kMostFaces; ++round) {
     context.checkpoint();
     const std::vector<char> border = border_vertices(patch);
@@ -198,7 +209,9 @@ void refine_patch(PatchTriangles& patch, double longest, double target_length, c
       double quads = step_in_quads(patch.step[h]);
       if (o >= 0) quads = std::max(quads, step_in_quads(patch.step[o]));
       const bool bridge = o >= 0 && border[a] && border[b];
-      if (!bridge && quads <= longest && length <= 2 * longest * target_length) continue;
+      const bool is_long = length > 2 * longest * target_length;
+      const bool is_fast = quads > longest && length > kShortest * target_length;
+      if (!bridge && !is_long && !is_fast) continue;
       marked[h] = 1;
       if (o >= 0) marked[o] = 1;
       any = true;

@@ -25,7 +25,8 @@ struct PatchTriangles {
 
 /// The pieces of one patch as triangles. \param pieces overlay pieces of the patch, ascending
 PatchTriangles triangulate_patch(const GridOverlay& overlay, const SpanningParameterization& param,
-                                 const WorkingSurface& surface, const std::vector<int>& pieces);
+                                 const WorkingSurface& surface, const FrameField& frames,
+                                 const std::vector<int>& pieces);
 
 /// Splits edges until none is longer than `longest` quads and no inner edge joins two border vertices. Midpoints take
 /// half the phase step of their edge, so the parameterization is reproduced exactly where it exists.

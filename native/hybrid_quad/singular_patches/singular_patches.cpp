@@ -35,11 +35,19 @@ std::vector<std::vector<int>> find_patches(const RegularQuads& regular) {
 
 double area_of(const PatchSurface& patch) { return patch.mesh.total_area(); }
 
-FilledPatch fill_patch(const WorkingSurface& surface, const SpanningParameterization& param, const RegularQuads& regular,
-                       const std::vector<int>& pieces, const PatchOptions& options, const RunContext& context) {
+/// A patch has about as many quads as fit its area and its border. Many more come from a function that oscillates.
+bool is_oversized(const PatchQuads& quads, const PatchSurface& patch) {
+  int arcs = 0;
+  for (const int arc : quads.arc) arcs += arc >= 0;
+  const double by_area = area_of(patch) / (patch.target_length * patch.target_length);
+  return static_cast<double>(quads.quads.size()) > 2 * by_area + arcs;
+}
+
+FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, const SpanningParameterization& param,
+                       const RegularQuads& regular, const std::vector<int>& pieces, const PatchOptions& options, const RunContext& context) {
   const int face = regular.overlay.piece_face[pieces.front()];
   const double length = surface.target_length[face];
-  PatchTriangles triangles = triangulate_patch(regular.overlay, param, surface, pieces);
+  PatchTriangles triangles = triangulate_patch(regular.overlay, param, surface, frames, pieces);
   refine_patch(triangles, options.longest_edge, length, context);
   const PatchSurface patch = finish_patch(triangles, regular.overlay, length);
   FilledPatch out;
@@ -47,6 +55,7 @@ FilledPatch fill_patch(const WorkingSurface& surface, const SpanningParameteriza
   out.area = area_of(patch);
   out.quads = morse_smale_quads(patch, options.persistence, context);
   out.rejected = violations_of(out.quads, patch);
+  if (is_oversized(out.quads, patch)) out.rejected.push_back("more quads than the patch has room for");
   if (!out.rejected.empty()) {
     out.combinatorial = true;
     out.quads = combinatorial_fill(patch, context);
@@ -82,7 +91,8 @@ int release_neighbours(RegularQuads& regular, const std::vector<std::vector<int>
 
 }  // namespace
 
-SingularPatches fill_singular_patches(const WorkingSurface& surface, const SpanningParameterization& param,
+SingularPatches fill_singular_patches(const WorkingSurface& surface, const FrameField& frames,
+                                      const SpanningParameterization& param,
                                       RegularQuads& regular, const PatchOptions& options, const RunContext& context) {
   SingularPatches out;
   for (int round = 0;; ++round) {
@@ -94,7 +104,7 @@ SingularPatches fill_singular_patches(const WorkingSurface& surface, const Spann
     for (std::size_t i = 0; i < patches.size(); ++i) {
       context.checkpoint(static_cast<double>(i) / static_cast<double>(patches.size()));
       try {
-        out.patches.push_back(fill_patch(surface, param, regular, patches[i], options, context));
+        out.patches.push_back(fill_patch(surface, frames, param, regular, patches[i], options, context));
         out.singular_area += out.patches.back().area;
       } catch (const InternalError& error) {
         failed.push_back(static_cast<int>(i));

@@ -33,7 +33,8 @@ struct PatchOptions {
 /// border extrema, and quadrangulated by the Morse-Smale complex; where that is no valid quad patch, combinatorially.
 /// Arc and node ids are overlay half-edges (the first of the arc) and overlay vertices.
 /// A patch that cannot be filled takes its neighbouring cells in (they leave `regular`) and is tried again.
-SingularPatches fill_singular_patches(const WorkingSurface& surface, const SpanningParameterization& param,
+SingularPatches fill_singular_patches(const WorkingSurface& surface, const FrameField& frames,
+                                      const SpanningParameterization& param,
                                       RegularQuads& regular, const PatchOptions& options, const RunContext& context);
 
 }  // namespace hybrid_quad
