@@ -6,6 +6,8 @@ import math
 
 import bpy
 
+from ..core.options import MOST_QUADS, RemeshOptions
+
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
     ("LENGTH", "Edge Length", "Say how long the quads' edges should be"),
@@ -29,9 +31,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     quads: bpy.props.IntProperty(
         name="Quads",
         description="Number of quads to aim at. The result is usually within ten percent; many sharp edges can force more",
-        default=5000,
+        default=RemeshOptions.quads,
         min=1,
-        max=10_000_000,
+        max=MOST_QUADS,
         soft_min=100,
         soft_max=100_000,
     )
