@@ -40,7 +40,8 @@ ROWS = (
     Row("dir_armadillo", 6000, setting="no_sharp"),
 )
 HEADER = (
-    "| model | sharp edges | triangles | quads (asked) | valid | irregular (paper, prototype) | SJ mean (paper) | SJ min "
+    "| model | sharp edges | triangles | quads (asked) | valid "
+    "| irregular (paper, prototype) | SJ mean (paper) | SJ min "
     "| feature distance % (paper) | distance % | singular area % | seconds (paper) | peak MB |"
 )
 
