@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import bpy
 
 import hybrid_quad
@@ -51,3 +53,8 @@ def test_settings_belong_to_the_object():
     second = bpy.data.objects.new("Second", first.data)
     first.hybrid_quad.quads = 123
     assert second.hybrid_quad.quads == 5000
+
+
+def test_the_manifest_tells_the_same_version():
+    manifest = Path(hybrid_quad.__file__).with_name("blender_manifest.toml").read_text()
+    assert f'version = "{hybrid_quad.__version__}"' in manifest
