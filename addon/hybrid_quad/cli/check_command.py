@@ -6,10 +6,10 @@ import argparse
 import json
 from typing import Any
 
-from ..core.check import Defect, check
+from ..core.check import check
 from ..core.mesh_io import read_mesh, replacing
 from . import exit_codes
-from .messages import list_elements
+from .messages import describe_defect
 
 
 def add_to(commands: Any) -> None:
@@ -17,8 +17,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "check",
         help="what is wrong with a mesh, and where",
-        description="Says what is wrong with a mesh, where, and what remesh would do about it. Exit status 1 if remesh "
-        "would refuse it.",
+        description="Says what is wrong with a mesh, where, and what remesh would do about it. Elements are "
+        "counted from 0. Exit status 1 if remesh would refuse it.",
     )
     parser.add_argument("input", metavar="IN", help="mesh file: .obj, .ply, .stl or .off")
     parser.add_argument("--report", metavar="FILE.json", help="also write the defects there, with every element")
@@ -31,7 +31,8 @@ def run(arguments: argparse.Namespace) -> int:
     defects = check(vertices, polygons)
     print(f"{arguments.input}: {len(vertices)} vertices, {len(polygons.sizes)} faces")
     for defect in defects:
-        print(_line(defect))
+        verdict = "repaired by remesh" if defect.repairable else "remesh refuses it"
+        print(f"  {describe_defect(defect.as_json(), verdict)}")
     if not defects:
         print("nothing is wrong with it")
     if arguments.report:
@@ -39,13 +40,3 @@ def run(arguments: argparse.Namespace) -> int:
         with replacing(arguments.report) as file:
             file.write(text.encode())
     return exit_codes.OK if all(defect.repairable for defect in defects) else exit_codes.CANNOT_REMESH
-
-
-def _line(defect: Defect) -> str:
-    if defect.element_kind == "edge":
-        names = [f"{a}-{b}" for a, b in defect.elements.tolist()]
-    else:
-        names = [str(element) for element in defect.elements.tolist()]
-    where = list_elements(defect.element_kind, names)
-    verdict = "repaired by remesh" if defect.repairable else "remesh refuses it"
-    return f"  {defect.code}: {where}{'; ' if where else ''}{verdict}: {defect.remedy}"

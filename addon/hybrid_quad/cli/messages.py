@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 from ..core.errors import InputError
 
@@ -24,9 +25,18 @@ def list_elements(kind: str, elements: list[str]) -> str:
 
 
 def describe_elements(error: InputError) -> str:
-    """The elements an error names, in parentheses, or an empty string."""
+    """The elements an error names, counted from 0, in parentheses, or an empty string."""
     names = [str(element) for element in error.elements]
     if error.element_kind == "edge":
         names = [f"{a}-{b}" for a, b in zip(names[0::2], names[1::2], strict=True)]
     text = list_elements(error.element_kind, names)
-    return f" ({text})" if text else ""
+    return f" ({text}, counted from 0)" if text else ""
+
+
+def describe_defect(defect: dict[str, Any], verdict: str = "") -> str:
+    """One line for a defect in its JSON form: what, where, and what becomes of it."""
+    elements = defect["elements"]
+    names = [f"{e[0]}-{e[1]}" if defect["element_kind"] == "edge" else str(e) for e in elements]
+    where = list_elements(defect["element_kind"], names)
+    remedy = f"{verdict}: {defect['remedy']}" if verdict else defect["remedy"]
+    return f"{defect['code']}: {'; '.join(part for part in (where, remedy) if part)}"

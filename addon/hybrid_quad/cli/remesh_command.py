@@ -14,7 +14,7 @@ from ..core.options import SOLVERS, RemeshOptions
 from ..core.remesh import RemeshResult, remesh_with_options
 from ..core.validation import violations
 from . import exit_codes
-from .messages import say
+from .messages import describe_defect, say
 from .progress_bar import ProgressBar
 
 
@@ -73,6 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise
     _write(arguments, result)
     if not arguments.quiet:
+        for defect in result.report["defects"]:
+            say(f"repaired {describe_defect(defect)}")
         for warning in result.report["warnings"]:
             say(f"warning: {warning}")
         seconds = time.monotonic() - started
