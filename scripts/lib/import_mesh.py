@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 
-from hybrid_quad.core.mesh_io import MeshFileError, read_mesh  # noqa: E402
+from hybrid_quad.core.mesh_io import MeshFileError, read_mesh
 
 
 def main() -> None:

@@ -317,7 +317,9 @@ class Stage:
         camera.location = Vector(fitted[0])
         layer.update()
         # No empty stripes above and below a flat model.
-        heights = [world_to_camera_view(self._scene, camera, Vector(point)).y for point in around[:: 1 + len(around) // 5000]]
+        heights = [
+            world_to_camera_view(self._scene, camera, Vector(point)).y for point in around[:: 1 + len(around) // 5000]
+        ]
         render = self._scene.render
         render.use_border = render.use_crop_to_border = True
         render.border_min_y, render.border_max_y = max(0.0, min(heights) - 0.02), min(1.0, max(heights) + 0.02)

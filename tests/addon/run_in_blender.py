@@ -17,10 +17,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def main() -> int:
-    if bpy.app.binary_path:
-        options = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    else:
-        options = sys.argv[1:]
+    # Blender's program passes on what stands behind "--".
+    behind = sys.argv.index("--") + 1 if "--" in sys.argv else len(sys.argv)
+    options = sys.argv[behind if bpy.app.binary_path else 1 :]
     # Blender's own Python need not have pytest: scripts/test names a folder that does.
     sys.path[:0] = [path for path in os.environ.get("HQ_TEST_PACKAGES", "").split(os.pathsep) if path]
     sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", os.path.join(HERE, "..", "..", "addon")))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import bpy
 import numpy as np
 
@@ -60,7 +62,12 @@ def add_grid(cells: int = 12, quads: int = 200) -> bpy.types.Object:
     steps = np.linspace(-1.0, 1.0, cells + 1)
     points = [(x, y, 0.0) for y in steps for x in steps]
     faces = [
-        (row * (cells + 1) + col, row * (cells + 1) + col + 1, (row + 1) * (cells + 1) + col + 1, (row + 1) * (cells + 1) + col)
+        (
+            row * (cells + 1) + col,
+            row * (cells + 1) + col + 1,
+            (row + 1) * (cells + 1) + col + 1,
+            (row + 1) * (cells + 1) + col,
+        )
         for row in range(cells)
         for col in range(cells)
     ]
@@ -103,6 +110,6 @@ def signed_volume(points: np.ndarray, faces: list[tuple[int, ...]]) -> float:
     """Volume inside a closed surface; negative where it is wound inside out."""
     total = 0.0
     for face in faces:
-        for second, third in zip(face[1:], face[2:]):
+        for second, third in itertools.pairwise(face[1:]):
             total += np.dot(points[face[0]], np.cross(points[second], points[third])) / 6.0
     return float(total)

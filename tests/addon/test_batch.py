@@ -22,7 +22,17 @@ BATCH = Path(hybrid_quad.__file__).parent / "batch.py"
 
 def _start(blend: Path, *arguments: str, **options) -> subprocess.Popen:
     if bpy.app.binary_path:
-        words = [bpy.app.binary_path, "-b", "--factory-startup", str(blend), "--python-exit-code", "1", "-P", str(BATCH), "--"]
+        words = [
+            bpy.app.binary_path,
+            "-b",
+            "--factory-startup",
+            str(blend),
+            "--python-exit-code",
+            "1",
+            "-P",
+            str(BATCH),
+            "--",
+        ]
     else:  # the package bpy has no program; this is what the program does
         script = (
             "import sys, runpy, bpy\n"
@@ -54,7 +64,19 @@ def blend(tmp_path):
 
 def test_a_file_in_a_file_out(blend, tmp_path):
     out, report = tmp_path / "out.blend", tmp_path / "r.json"
-    done = _run(blend, "--object", "Cube", "--quads", "600", "--sharp-angle", "50", "--output", str(out), "--report", str(report))
+    done = _run(
+        blend,
+        "--object",
+        "Cube",
+        "--quads",
+        "600",
+        "--sharp-angle",
+        "50",
+        "--output",
+        str(out),
+        "--report",
+        str(report),
+    )
     assert done.returncode == 0, done.stderr
     record = json.loads(report.read_text())
     assert record["status"] == "ok" and record["options"]["quads"] == 600 and record["options"]["sharp_angle"] == 50

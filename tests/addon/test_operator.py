@@ -169,7 +169,10 @@ def test_what_the_method_refuses_is_an_error_and_changes_nothing(scene_state):
     count = 24
     angle = np.arange(count) * 2 * math.pi / count
     ring = [
-        [(math.cos(a) * (1 + w * math.cos(a / 2)), math.sin(a) * (1 + w * math.cos(a / 2)), w * math.sin(a / 2)) for a in angle]
+        [
+            (math.cos(a) * (1 + w * math.cos(a / 2)), math.sin(a) * (1 + w * math.cos(a / 2)), w * math.sin(a / 2))
+            for a in angle
+        ]
         for w in (-0.3, 0.3)
     ]
     faces = [(i, i + 1, count + i + 1, count + i) for i in range(count - 1)] + [(count - 1, count, 0, 2 * count - 1)]
@@ -290,7 +293,7 @@ def test_marked_edges_are_kept_and_marked_alike(mark, setting):
         flags = [item.value for item in attribute.data]
     else:
         flags = [getattr(edge, mark) for edge in result.data.edges]
-    marked = np.array([tuple(edge.vertices) for edge, flag in zip(result.data.edges, flags) if flag])
+    marked = np.array([tuple(edge.vertices) for edge, flag in zip(result.data.edges, flags, strict=True) if flag])
     points = points_of(result)
     assert len(marked) and np.abs(points[marked][:, :, 0]).max() < 1e-4
     lengths = np.linalg.norm(points[marked[:, 0]] - points[marked[:, 1]], axis=1)
@@ -330,6 +333,19 @@ def test_the_report_stays_with_the_object():
     report = read_report(result)
     assert report["quads"] == len(faces_of(result))
     assert report["status"] == "ok"
+
+
+def test_a_repaired_mesh_is_reported():
+    from hybrid_quad.blender.result_mesh import read_report
+
+    source = add_sphere()
+    source.data.vertices.add(1)
+    source.data.vertices[-1].co = (3, 3, 3)
+    source.data.update()
+    result = remesh()
+    assert [defect["code"] for defect in read_report(result)["defects"]] == ["isolated_vertex"]
+    assert_sound(result)
+    assert points_of(result).max() < 1.5
 
 
 def test_polygons_of_any_size_are_taken():

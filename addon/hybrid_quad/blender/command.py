@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from ..cli import exit_codes
+from ..cli.messages import describe_defect
 from ..core import report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
@@ -92,20 +93,30 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--output", required=True, metavar="OUT.blend", help="file to save the result to")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quads", type=_positive_integer, metavar="N", help="number of quads to aim at")
-    size.add_argument("--edge-length", type=_positive_number, metavar="L", help="length of the quads' edges, in scene units")
+    size.add_argument(
+        "--edge-length", type=_positive_number, metavar="L", help="length of the quads' edges, in scene units"
+    )
     sharp = parser.add_mutually_exclusive_group()
     sharp.add_argument("--sharp-angle", type=_angle, metavar="DEG", help="keep edges that bend by more than this")
     sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary and marked edges")
     marked = parser.add_mutually_exclusive_group()
-    marked.add_argument("--marked-sharp", dest="marked_sharp", action="store_true", default=None, help="keep marked sharp edges")
+    marked.add_argument(
+        "--marked-sharp", dest="marked_sharp", action="store_true", default=None, help="keep marked sharp edges"
+    )
     marked.add_argument("--no-marked-sharp", dest="marked_sharp", action="store_false", help="do not")
     parser.add_argument("--seams", action="store_true", default=None, help="keep UV seams")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object")
+    place.add_argument(
+        "--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object"
+    )
     place.add_argument("--replace", dest="result_mode", action="store_const", const="REPLACE", help="result in place")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="same seed, same result (default 0)")
-    parser.add_argument("--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it")
-    parser.add_argument("--time-limit", type=_positive_number, metavar="SECONDS", help="stop with status 4 after this time")
+    parser.add_argument(
+        "--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it"
+    )
+    parser.add_argument(
+        "--time-limit", type=_positive_number, metavar="SECONDS", help="stop with status 4 after this time"
+    )
     parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     return parser
@@ -137,7 +148,9 @@ def _find_object(name: str) -> bpy.types.Object:
     if obj is None:
         meshes = sorted(each.name for each in bpy.context.view_layer.objects if each.type == "MESH")
         known = ", ".join(f'"{each}"' for each in meshes) or "none"
-        raise UsageError(f'no object "{name}" in the view layer "{bpy.context.view_layer.name}"; mesh objects are: {known}')
+        raise UsageError(
+            f'no object "{name}" in the view layer "{bpy.context.view_layer.name}"; mesh objects are: {known}'
+        )
     if obj.type != "MESH":
         raise UsageError(f'"{name}" is no mesh object but a {obj.type.lower()}')
     if obj.library is not None:
@@ -237,10 +250,11 @@ def _printer(quiet: bool) -> Callable[[str, float], None] | None:
 
 
 def _summary(options: argparse.Namespace, record: dict[str, Any]) -> str:
-    lines = [f"hybrid_quad: warning: {warning}" for warning in record["warnings"]]
+    lines = [f"hybrid_quad: repaired {describe_defect(defect)}" for defect in record["defects"]]
+    lines += [f"hybrid_quad: warning: {warning}" for warning in record["warnings"]]
     quality = record["scaled_jacobian"]
     lines.append(
-        f"hybrid_quad: {options.output}: \"{record['object']}\" has {record['quads']} quads, "
+        f'hybrid_quad: {options.output}: "{record["object"]}" has {record["quads"]} quads, '
         f"{record['irregular_vertices']} irregular vertices, scaled Jacobian {quality['mean']:.3f} in the mean and "
         f"{quality['min']:.3f} at worst"
     )
@@ -249,7 +263,7 @@ def _summary(options: argparse.Namespace, record: dict[str, Any]) -> str:
 
 @contextlib.contextmanager
 def _interruptible() -> Iterator[None]:
-    """Ctrl-C and "terminate" raise KeyboardInterrupt; Blender's own handlers would ignore or end it without cleaning up."""
+    """Ctrl-C and "terminate" raise KeyboardInterrupt; Blender's own handlers ignore them or end it at once."""
 
     def interrupt(_number: int, _frame: Any) -> None:
         raise KeyboardInterrupt

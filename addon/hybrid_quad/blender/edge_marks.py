@@ -49,7 +49,9 @@ def write(mesh: bpy.types.Mesh, edges: IntArray, marks: MarkArray) -> None:
         attribute.data.foreach_set("value", (of_edge & FEATURE) != 0)
 
 
-def add_sharp_by_angle(marks: MarkArray, vertices: FloatArray, polygons: Polygons, edges: IntArray, angle: float) -> MarkArray:
+def add_sharp_by_angle(
+    marks: MarkArray, vertices: FloatArray, polygons: Polygons, edges: IntArray, angle: float
+) -> MarkArray:
     """`marks`, with `SHARP` added where the normals of an edge's two polygons differ by more than `angle` radians."""
     normals = _polygon_normals(vertices, polygons)
     following = np.arange(1, len(polygons.vertices) + 1)
@@ -68,7 +70,9 @@ def add_sharp_by_angle(marks: MarkArray, vertices: FloatArray, polygons: Polygon
     return result
 
 
-def of_nearest(points: FloatArray, vertices: FloatArray, edges: IntArray, marks: MarkArray, spacing: float) -> MarkArray:
+def of_nearest(
+    points: FloatArray, vertices: FloatArray, edges: IntArray, marks: MarkArray, spacing: float
+) -> MarkArray:
     """For every point, the marks of the nearest of some marked edges.
 
     Parameters

@@ -67,7 +67,8 @@ def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshSo
     evaluated = obj.evaluated_get(depsgraph)
     if not evaluated.is_evaluated:
         raise InputError(
-            "not_evaluated", f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown'
+            "not_evaluated",
+            f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown',
         )
     linear = np.array(evaluated.matrix_world.to_3x3(), np.float64)
     scales = np.linalg.svd(linear, compute_uv=False)

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from ..cli.messages import describe_elements
+from ..cli.messages import describe_defect, describe_elements
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
 from .background_run import BackgroundRun
@@ -17,7 +17,16 @@ from .result_mesh import place_result
 _TIMER_SECONDS = 0.1
 # What the user may do while a run goes on: look around. Anything else could change the scene under it.
 _HARMLESS_EVENTS = frozenset(
-    ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION")
+    (
+        "MOUSEMOVE",
+        "INBETWEEN_MOUSEMOVE",
+        "MIDDLEMOUSE",
+        "WHEELUPMOUSE",
+        "WHEELDOWNMOUSE",
+        "TRACKPADPAN",
+        "TRACKPADZOOM",
+        "NDOF_MOTION",
+    )
 )
 
 
@@ -97,8 +106,12 @@ class OBJECT_OT_hybrid_quad_remesh(bpy.types.Operator):
         context.workspace.status_text_set(None)
         _redraw_views(context)
 
-    def _finish(self, context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> set[str]:
+    def _finish(
+        self, context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult
+    ) -> set[str]:
         target = place_result(context, obj, task, result)
+        for defect in result.report["defects"]:
+            self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
         for warning in result.report["warnings"]:
             self.report({"WARNING"}, warning)
         irregular = result.report["irregular_vertices"]

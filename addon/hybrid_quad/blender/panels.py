@@ -98,6 +98,10 @@ class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
             right = row.row()
             right.alignment = "RIGHT"
             right.label(text=value)
+        for defect in report.get("defects", ()):
+            self.layout.label(
+                text=f"Repaired: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
+            )
         for warning in report.get("warnings", ()):
             self.layout.label(text=warning, icon="ERROR")
 

@@ -17,7 +17,7 @@ RESULT_MODES = (
     (
         "REPLACE",
         "Replace Mesh",
-        "Put the quads in this object. Visible modifiers are applied. Other objects that share the mesh keep the old one",
+        "Put the quads in this object. Visible modifiers are applied. Other users of the mesh keep the old one",
     ),
 )
 
@@ -30,7 +30,7 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     quads: bpy.props.IntProperty(
         name="Quads",
-        description="Number of quads to aim at. The result is usually within ten percent; many sharp edges can force more",
+        description="Number of quads to aim at. The result is usually within ten percent; sharp edges can force more",
         default=RemeshOptions.quads,
         min=1,
         max=MOST_QUADS,

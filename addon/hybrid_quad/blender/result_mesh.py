@@ -18,16 +18,16 @@ from .mesh_source import MeshSource
 from .remesh_task import RemeshTask, marks_of_result
 
 
-def place_result(context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> bpy.types.Object:
+def place_result(
+    context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult
+) -> bpy.types.Object:
     """Puts a run's result where the object's settings want it, and returns the object that has it.
 
     Nothing of the scene changes before the whole mesh exists.
     """
     mesh = build_mesh(obj.data.name, task, result)
-    if obj.hybrid_quad.result_mode == "REPLACE":
-        target = _replace_mesh(obj, mesh)
-    else:
-        target = _add_object(context, obj, mesh)
+    in_place = obj.hybrid_quad.result_mode == "REPLACE"
+    target = _replace_mesh(obj, mesh) if in_place else _add_object(context, obj, mesh)
     for each in {obj, target}:
         each.hybrid_quad.last_report = report.as_text(result.report)
     return target
@@ -93,7 +93,7 @@ def _nearest_source_faces(source: MeshSource, result: RemeshResult) -> np.ndarra
         return np.zeros(len(result.quads), np.int64)
     corners = source.polygons.vertices.tolist()
     ends = np.cumsum(source.polygons.sizes).tolist()
-    polygons = [corners[end - size : end] for end, size in zip(ends, source.polygons.sizes.tolist())]
+    polygons = [corners[end - size : end] for end, size in zip(ends, source.polygons.sizes.tolist(), strict=True)]
     tree = BVHTree.FromPolygons(source.vertices.tolist(), polygons)
     middles = result.vertices[result.quads].mean(axis=1)
     found = (tree.find_nearest(middle)[2] for middle in middles.tolist())
@@ -101,7 +101,7 @@ def _nearest_source_faces(source: MeshSource, result: RemeshResult) -> np.ndarra
 
 
 def _add_object(context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Object:
-    # A copy keeps transform, parent, constraints, object-level materials and settings; what belongs to the old mesh goes.
+    # A copy keeps transform, parent, constraints, materials and settings; what belongs to the old mesh goes.
     result = source.copy()
     result.name = f"{source.name} Quads"
     result.data = mesh

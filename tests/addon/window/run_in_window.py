@@ -1,6 +1,7 @@
 """The add-on in a real window: panel drawn, a run in the background, progress, one undo step, Esc.
 
-    xvfb-run -a -s "-screen 0 1600x1000x24" blender --factory-startup --enable-event-simulate -P run_in_window.py -- [FOLDER]
+    xvfb-run -a -s "-screen 0 1600x1000x24" \\
+        blender --factory-startup --enable-event-simulate -P run_in_window.py -- [FOLDER]
 
 Ends Blender with status 0 or 1. FOLDER receives pictures of the window.
 """
@@ -47,7 +48,10 @@ def steps() -> Iterator[float]:
     yield from take_picture("1_panel.png")
 
     with in_view():
-        expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"}, "the run goes on in the background")
+        expect(
+            bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"},
+            "the run goes on in the background",
+        )
         expect(not bpy.ops.object.hybrid_quad_remesh.poll(), "a second one cannot be started meanwhile")
     yield from until_finished()
     result = bpy.context.view_layer.objects.active
