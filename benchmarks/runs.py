@@ -149,7 +149,7 @@ def _measure(command: list[str], seconds: float, memory_mb: int) -> _Measured:
         status, message = "crash", f"signal {-process.returncode} {message}"
     else:
         status = "failed" if process.returncode else "ok"
-    return _Measured(status, message[-500:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+    return _Measured(status, message[-2000:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
 def _own_checks(source: Path, result: Path) -> list[str]:
