@@ -7,6 +7,7 @@
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/pipeline/snapshots.h"
+#include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
 
 namespace hybrid_quad {
@@ -55,6 +56,8 @@ class ComponentRemesher {
 
  private:
   void prepare(const std::vector<std::array<int, 2>>& marked) {
+    // Small features may ask for more quads than the user did, within reason.
+    constexpr double kMostExtra = 1.5;
     const RunContext context = context_.in_stage("features", 0.0, 0.03);
     context.checkpoint();
     FeatureOptions features;
@@ -66,7 +69,9 @@ class ComponentRemesher {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, result_.features));
     const RunContext surface_context = context_.in_stage("working surface", 0.03, 0.2);
     surface_ = clock_.measure("working surface", [&] {
-      const std::vector<double> target(mesh_.vertex_count(), length_);
+      const std::vector<double> target =
+          feature_sized_lengths(mesh_, result_.features, length_, FeatureSizeOptions{}, surface_context);
+      quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, kMostExtra * quads_asked_);
       return build_working_surface(mesh_, result_.features, target, WorkingSurfaceOptions{}, surface_context);
     });
     result_.working_faces = surface_.mesh.face_count();

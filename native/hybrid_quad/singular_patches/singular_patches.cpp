@@ -54,7 +54,8 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
   out.region = surface.features.face_region[face];
   out.area = area_of(patch);
   out.quads = morse_smale_quads(patch, options.persistence, context);
-  out.rejected = violations_of(out.quads, patch);
+  // Shapes that an indexed mesh can't hold are mended once the patch is in its place (repair_complex).
+  out.rejected = structural_violations_of(out.quads, patch);
   if (is_oversized(out.quads, patch)) out.rejected.push_back("more quads than the patch has room for");
   if (!out.rejected.empty()) {
     out.combinatorial = true;

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "hybrid_quad/features/features.h"
+
+namespace hybrid_quad {
+
+struct FeatureSizeOptions {
+  double least_ratio = 0.35;   ///< shortest length over the asked one
+  double growth = 0.5;         ///< how much the length may grow over a unit of distance
+};
+
+/// Target lengths that give way to small features: near a curve that is shorter than a quad edge, and where two curves
+/// that do not meet are nearer than one, the length is that of the curve or of the gap (within bounds), and it grows back
+/// with the distance.
+/// \param length  asked quad edge length (scene units)
+/// \returns #V of the mesh
+std::vector<double> feature_sized_lengths(const TriangleMesh& mesh, const FeatureGraph& features, double length,
+                                          const FeatureSizeOptions& options, const RunContext& context);
+
+/// Number of quads that fit: integral of 1 / h^2 (h is linear in each face; one point a face).
+double quads_for_lengths(const TriangleMesh& mesh, const std::vector<double>& length);
+
+}  // namespace hybrid_quad
