@@ -69,8 +69,9 @@ class ComponentRemesher {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, result_.features));
     const RunContext surface_context = context_.in_stage("working surface", 0.03, 0.2);
     surface_ = clock_.measure("working surface", [&] {
+      const SurfaceIndex index(mesh_, {});
       const std::vector<double> target =
-          feature_sized_lengths(mesh_, result_.features, length_, FeatureSizeOptions{}, surface_context);
+          feature_sized_lengths(index, result_.features, length_, FeatureSizeOptions{}, surface_context);
       quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, kMostExtra * quads_asked_);
       return build_working_surface(mesh_, result_.features, target, WorkingSurfaceOptions{}, surface_context);
     });

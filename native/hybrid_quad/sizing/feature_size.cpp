@@ -5,6 +5,8 @@
 #include <limits>
 #include <queue>
 
+#include "hybrid_quad/sizing/thin_parts.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -64,8 +66,9 @@ double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
 
 }  // namespace
 
-std::vector<double> feature_sized_lengths(const TriangleMesh& mesh, const FeatureGraph& features, double length,
+std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
                                           const FeatureSizeOptions& options, const RunContext& context) {
+  const TriangleMesh& mesh = index.mesh();
   std::vector<double> target(mesh.vertex_count(), length);
   const double least = options.least_ratio * length;
   // A quad edge may be this much longer than the room it has: Psi rounds to the nearest number of quads.
@@ -95,7 +98,8 @@ std::vector<double> feature_sized_lengths(const TriangleMesh& mesh, const Featur
     limit(a, gap);
     limit(b, gap);
   });
-  context.checkpoint(0.6);
+  context.checkpoint(0.5);
+  limit_lengths_of_thin_parts(index, length, options.least_ratio, target, context);
   std::vector<int> none;
   propagate(mesh, target, none, length, [&](double at, double edge) { return at + options.growth * edge; });
   return target;

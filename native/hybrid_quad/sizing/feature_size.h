@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/mesh/surface_index.h"
 
 namespace hybrid_quad {
 
@@ -10,11 +11,12 @@ struct FeatureSizeOptions {
 };
 
 /// Target lengths that give way to small features: near a curve that is shorter than a quad edge, and where two curves
-/// that do not meet are nearer than one, the length is that of the curve or of the gap (within bounds), and it grows back
-/// with the distance.
+/// that do not meet are nearer than one, the length is that of the curve or of the gap (within bounds); thin tubes and
+/// tips get at least four quads around. The length grows back with the distance.
+/// \param index  of the surface
 /// \param length  asked quad edge length (scene units)
 /// \returns #V of the mesh
-std::vector<double> feature_sized_lengths(const TriangleMesh& mesh, const FeatureGraph& features, double length,
+std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
                                           const FeatureSizeOptions& options, const RunContext& context);
 
 /// Number of quads that fit: integral of 1 / h^2 (h is linear in each face; one point a face).

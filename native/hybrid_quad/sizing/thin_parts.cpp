@@ -1,0 +1,88 @@
+#include "hybrid_quad/sizing/thin_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kOpposite = -0.3;  ///< cosine of the normals of two sides of a part
+
+class ThicknessProbe {
+ public:
+  ThicknessProbe(const SurfaceIndex& index, double reach) : index_(index), reach_(reach) {}
+
+  /// Radius of the ball inside that touches at p, or `largest` where no opposite side is nearer.
+  double radius(const Vector3& p, const Vector3& normal, double largest) const {
+    constexpr int kSteps = 8;
+    constexpr double kTouches = 0.99;
+    double r = largest;
+    for (int step = 0; step < kSteps; ++step) {
+      const Vector3 centre = p - r * normal;
+      const SurfacePoint q = index_.nearest(centre);
+      if (q.face < 0 || std::sqrt(q.squared_distance) >= kTouches * r) break;
+      if (index_.mesh().normal(q.face).dot(normal) > kOpposite) return largest;
+      const double height = normal.dot(p - q.position);
+      if (height <= 0) return largest;
+      r = std::min(r, (p - q.position).squaredNorm() / (2 * height));
+    }
+    return r;
+  }
+
+  /// Whether a part ends on both sides of its middle within reach, in some direction across: a tube or a tip, no sheet.
+  bool is_narrow(const Vector3& centre, const Vector3& normal) const {
+    constexpr int kDirections = 4;
+    const Vector3 x = normal.unitOrthogonal(), y = normal.cross(x);
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = kPi * i / kDirections;
+      const Vector3 d = reach_ * (std::cos(angle) * x + std::sin(angle) * y);
+      if (is_outside(centre + d) && is_outside(centre - d)) return true;
+    }
+    return false;
+  }
+
+ private:
+  bool is_outside(const Vector3& p) const {
+    const SurfacePoint q = index_.nearest(p);
+    return q.face < 0 || index_.mesh().normal(q.face).dot(p - q.position) > 0;
+  }
+
+  const SurfaceIndex& index_;
+  double reach_;
+};
+
+Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
+  Vector3 sum = Vector3::Zero();
+  const int first = mesh.outgoing(v);
+  for (int h = first; h >= 0;) {
+    sum += mesh.area_normal(h / 3);
+    h = mesh.rotate_ccw(h);
+    if (h == first) break;
+  }
+  return sum.normalized();
+}
+
+}  // namespace
+
+void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, double least_ratio, std::vector<double>& target,
+                                 const RunContext& context) {
+  constexpr double kProbesPerQuad = 2;
+  const TriangleMesh& mesh = index.mesh();
+  const double quads = mesh.total_area() / (length * length);
+  const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / (kProbesPerQuad * quads)));
+  const double enough = 2 * length / kPi;  // a circle of this radius has room for four quads
+  const ThicknessProbe probe(index, 0.9 * length);
+  for (int v = 0; v < mesh.vertex_count(); v += stride) {
+    if (v % 512 < stride) context.checkpoint();
+    if (mesh.outgoing(v) < 0) continue;
+    const Vector3 normal = vertex_normal(mesh, v);
+    if (!(normal.squaredNorm() > 0.5)) continue;
+    const double r = probe.radius(mesh.position(v), normal, enough);
+    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal)) continue;
+    target[v] = std::min(target[v], std::max(r * kPi / 2, least_ratio * length));
+  }
+}
+
+}  // namespace hybrid_quad
