@@ -18,6 +18,21 @@ namespace {
 /// regular part at all, where only the patches' guarantee is needed.
 enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
 
+/// Settings of one whole pass over a component. The first are the defaults; the others are tried, in this order, only
+/// where quads came out that fold or have no area.
+struct Settings {
+  double quads_factor = 1.0;
+  double least_length_ratio = 0.35;  ///< how far small features and thin parts may shorten edges
+  double curl_weight = 1e-5;
+};
+constexpr Settings kSettings[] = {
+    {},
+    {1.05, 0.35, 1e-3},
+    {1.0, 0.2, 1e-5},
+    {1.4, 0.25, 1e-4},
+    {2.0, 0.2, 1e-5},
+};
+
 struct Extraction {
   QuadMesh mesh;
   SpanningParameterization param;
@@ -31,11 +46,30 @@ void require_sound(const std::string& stage, const Violations& violations) {
   if (!violations.empty()) throw InternalError(stage, violations.front());
 }
 
+int quads_without_area(const QuadMesh& mesh) {
+  // Of the squared mean edge length, as the smallest area that still counts as a face.
+  constexpr double kLeastArea = 1e-10;
+  double sum = 0;
+  const auto point = [&](const std::array<int, 4>& q, int i) { return mesh.positions[q[i & 3]]; };
+  for (const auto& q : mesh.quads)
+    for (int i = 0; i < 4; ++i) sum += (point(q, i + 1) - point(q, i)).norm();
+  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
+  int count = 0;
+  for (const auto& q : mesh.quads)
+    count += 0.5 * (point(q, 2) - point(q, 0)).cross(point(q, 3) - point(q, 1)).norm() <= kLeastArea * mean * mean;
+  return count;
+}
+
 class ComponentRemesher {
  public:
-  ComponentRemesher(const TriangleMesh& mesh, double quads_asked, const RemeshOptions& options, StageClock& clock,
-                    const RunContext& context)
-      : mesh_(mesh), quads_asked_(quads_asked), options_(options), clock_(clock), context_(context) {}
+  ComponentRemesher(const TriangleMesh& mesh, double quads_asked, const RemeshOptions& options, const Settings& settings,
+                    StageClock& clock, const RunContext& context)
+      : mesh_(mesh),
+        quads_asked_(quads_asked * settings.quads_factor),
+        options_(options),
+        settings_(settings),
+        clock_(clock),
+        context_(context) {}
 
   ComponentResult run(const std::vector<std::array<int, 2>>& marked) {
     result_.area = mesh_.total_area();
@@ -49,8 +83,10 @@ class ComponentRemesher {
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
     result_.mesh = std::move(best.mesh);
-    if (options_.improve) improve();
+    const SurfaceIndex index(mesh_, result_.features.face_region);
+    if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
+    result_.flawed_quads = static_cast<int>(inverted_quads(result_.mesh, index).size()) + quads_without_area(result_.mesh);
     return std::move(result_);
   }
 
@@ -70,8 +106,10 @@ class ComponentRemesher {
     const RunContext surface_context = context_.in_stage("working surface", 0.03, 0.2);
     surface_ = clock_.measure("working surface", [&] {
       const SurfaceIndex index(mesh_, {});
+      FeatureSizeOptions sizes;
+      sizes.least_ratio = settings_.least_length_ratio;
       const std::vector<double> target =
-          feature_sized_lengths(index, result_.features, length_, FeatureSizeOptions{}, surface_context);
+          feature_sized_lengths(index, result_.features, length_, sizes, surface_context);
       quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, kMostExtra * quads_asked_);
       return build_working_surface(mesh_, result_.features, target, WorkingSurfaceOptions{}, surface_context);
     });
@@ -121,7 +159,9 @@ class ComponentRemesher {
 
   Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
     const SizedFrames sized = clock_.measure("sizing", [&] {
-      return apply_sizing(surface_, unit, asked, SizingOptions{}, context_.in_stage("sizing", 0.3, 0.4));
+      SizingOptions o;
+      o.curl_weight = settings_.curl_weight;
+      return apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(sized.field, surface_, "sizing"));
     const PeriodicField psi = clock_.measure("periodic field", [&] {
@@ -166,10 +206,9 @@ class ComponentRemesher {
     return out;
   }
 
-  void improve() {
+  void improve(const SurfaceIndex& index) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
     clock_.measure("improve", [&] {
-      const SurfaceIndex index(mesh_, result_.features.face_region);
       ImproveOptions o;
       o.fit = options_.fit;
       o.target_length = length_;
@@ -181,6 +220,7 @@ class ComponentRemesher {
   const TriangleMesh& mesh_;
   double quads_asked_;
   const RemeshOptions& options_;
+  const Settings& settings_;
   StageClock& clock_;
   const RunContext& context_;
   double length_ = 0;
@@ -193,7 +233,30 @@ class ComponentRemesher {
 ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
                                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context) {
-  return ComponentRemesher(mesh, quads_asked, options, clock, context).run(marked);
+  ComponentResult best;
+  std::string broken;
+  bool any = false;
+  double begin = 0, end = 0.9;
+  for (const Settings& settings : kSettings) {
+    try {
+      const RunContext pass = context.in_stage(context.stage, begin, end);
+      ComponentResult result = ComponentRemesher(mesh, quads_asked, options, settings, clock, pass).run(marked);
+      result.passes = best.passes + 1;
+      if (!any || result.flawed_quads < best.flawed_quads)
+        best = std::move(result);
+      else
+        best.passes = result.passes;
+      any = true;
+      if (best.flawed_quads == 0) break;
+    } catch (const InternalError& error) {
+      broken = error.what();
+      ++best.passes;
+    }
+    begin = end;
+    end += 0.5 * (1 - end);
+  }
+  if (!any) throw InternalError("remesh", broken);
+  return best;
 }
 
 }  // namespace hybrid_quad

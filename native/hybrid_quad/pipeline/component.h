@@ -17,6 +17,8 @@ struct ComponentResult {
   int dislocations_found = 0, dislocations = 0;
   double area = 0, singular_area = 0, combinatorial_area = 0;
   PatchRecord patches;
+  int flawed_quads = 0;  ///< quads that point against the surface or have no area
+  int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;
 };
 

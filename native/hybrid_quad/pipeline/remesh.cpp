@@ -94,6 +94,8 @@ void append(RemeshResult& result, const ComponentResult& component, const std::v
   r.field_singularities += component.field_singularities;
   r.dislocations += component.dislocations;
   r.dislocations_found += component.dislocations_found;
+  r.flawed_quads += component.flawed_quads;
+  r.extra_passes += component.passes - 1;
   r.patches.count += component.patches.count;
   r.patches.morse_smale += component.patches.morse_smale;
   r.patches.combinatorial += component.patches.combinatorial;
@@ -161,6 +163,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   if (std::abs(report.quads / wanted - 1) > 0.1)
     report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
                               ": features or small parts need another number");
+  if (report.flawed_quads > 0)
+    report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
   clock.measure("quality", [&] {
     measure_quality(result, components, parts, built.mesh, context.in_stage("quality", 0.97, 1.0));
   });

@@ -45,6 +45,8 @@ struct RemeshReport {
   int dislocations_found = 0;
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
   PatchRecord patches;
+  int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
+  int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features
