@@ -26,6 +26,7 @@ PUBLIC_HEADERS = {
     "frame_field": {"frame_topology.h"},
     "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
+    "sizing": {"feature_size.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 FORBIDDEN_IMPORTS = {"core": ("bpy", "cli", "blender"), "cli": ("bpy", "blender"), "": ("bpy",)}

@@ -61,6 +61,8 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["dislocations_found"] = report.dislocations_found;
   result["singular_area_fraction"] = report.singular_area_fraction;
   result["patches"] = dict_of_patches(report.patches);
+  result["flawed_quads"] = report.flawed_quads;
+  result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;
   result["hausdorff_percent"] = report.hausdorff_percent;
   result["mean_distance_percent"] = report.mean_distance_percent;

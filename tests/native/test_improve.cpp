@@ -9,7 +9,7 @@
 #include "hybrid_quad/improve/surface_walk.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/workpiece.h"
-#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/mesh/segment_index.h"
 #include "support/meshes.h"
 
@@ -295,6 +295,62 @@ TEST(Improve, NoQuadStaysStraightAtAFeature) {
   EXPECT_EQ(straight(), 0);
   EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.3);
   EXPECT_TRUE(violations_of(quads).empty());
+}
+
+/// A triangle with n sides of small triangles along each of its sides.
+TriangleMesh triangle(int n) {
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> faces;
+  const auto id = [n](int i, int j) { return j * (n + 1) - j * (j - 1) / 2 + i; };
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i + j <= n; ++i) positions.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n, 0);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i + j < n; ++i) {
+      faces.push_back({id(i, j), id(i + 1, j), id(i, j + 1)});
+      if (i + j + 1 < n) faces.push_back({id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  return TriangleMesh(positions, faces);
+}
+
+TEST(Improve, OneQuadOnATriangleGetsInnerVertices) {
+  const Surface surface(triangle(6));
+  QuadMesh quads;
+  quads.positions = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  quads.quads = {{0, 1, 2, 3}};
+  bind(quads, surface);
+  ASSERT_EQ(quads.feature_edges.size(), 4u);
+  ASSERT_NEAR(shape_quality(quads).scaled_jacobian_min, 0, 1e-12);
+  improve(quads, surface);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.1);
+  expect_on_features(quads, surface);
+}
+
+TEST(Improve, CrowdedQuadsGo) {
+  // One square of the grid holds a web of quads as small as a hundredth of it.
+  const Surface surface(test::flat_grid(8, 8));
+  QuadMesh quads = sheet(8, 8);
+  std::array<int, 4> outer = quads.quads[27];
+  quads.quads.erase(quads.quads.begin() + 27);
+  for (int ring = 0; ring < 5; ++ring) {
+    const Vector3 centre(0.42, 0.41, 0);
+    std::array<int, 4> inner;
+    for (int i = 0; i < 4; ++i) {
+      inner[i] = static_cast<int>(quads.positions.size());
+      quads.positions.push_back(centre + 0.2 * (quads.positions[outer[i]] - centre));
+    }
+    for (int i = 0; i < 4; ++i) quads.quads.push_back({outer[i], outer[(i + 1) % 4], inner[(i + 1) % 4], inner[i]});
+    outer = inner;
+  }
+  quads.quads.push_back(outer);
+  bind(quads, surface);
+  ASSERT_TRUE(violations_of(quads).empty());
+  ImproveOptions options;
+  options.target_length = 1.0 / 8;
+  improve(quads, surface, options);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_LE(quads.quads.size(), 70u);
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.4);
 }
 
 TEST(Improve, SameAtAnyScaleAndPlace) {

@@ -1,5 +1,6 @@
 #include "hybrid_quad/improve/crowding.h"
 
+#include <array>
 #include <vector>
 
 #include "hybrid_quad/improve/quad_moves.h"
@@ -85,6 +86,30 @@ bool collapse_cheaper_diagonal(Workpiece& piece, int q, double most_cost) {
   return true;
 }
 
+/// Undoes a pillow: a quad whose corners all have three quads goes with its ring of four, which one quad replaces.
+bool remove_pillow(EditMesh& mesh, int q) {
+  const EditMesh::Quad inner = mesh.quad(q);
+  EditMesh::Quad outer;
+  std::array<int, 4> ring;
+  for (int i = 0; i < 4; ++i) {
+    const int v = inner[i];
+    if (!mesh.is_free(v) || mesh.on_boundary(v) || !mesh.feature_links(v).empty() || mesh.valence(v) != 3) return false;
+    ring[i] = mesh.across(q, i);
+    if (ring[i] < 0) return false;
+    // Across side i the ring's quad runs (.., inner[i + 1], inner[i], outer[i], outer[i + 1]).
+    outer[i] = mesh.quad(ring[i])[(mesh.corner_of(ring[i], v) + 1) & 3];
+  }
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) & 3;
+    if (mesh.quad(ring[i])[(mesh.corner_of(ring[i], inner[i]) + 2) & 3] != outer[j]) return false;
+    if (outer[i] == outer[j] || outer[i] == outer[(i + 2) & 3]) return false;
+    if (mesh.valence(outer[i]) <= mesh.least_valence(outer[i])) return false;
+  }
+  for (const int side : ring) mesh.set_quad(side, mesh.quad(side), false);
+  mesh.set_quad(q, outer, true);
+  return true;
+}
+
 }  // namespace
 
 void spread_crowded(Workpiece& piece, const RunContext& context) {
@@ -111,7 +136,7 @@ int remove_crowded(Workpiece& piece, const RunContext& context) {
     const int before = removed;
     for (int q = 0; q < piece.mesh.quad_count(); ++q)
       if (piece.mesh.alive(q) && mean_square_side(piece.mesh, q) < kSmall * piece.h * piece.h)
-        removed += collapse_cheaper_diagonal(piece, q, kMostCost);
+        removed += remove_pillow(piece.mesh, q) || collapse_cheaper_diagonal(piece, q, kMostCost);
     if (removed == before) break;
   }
   piece.mesh.forget_log();

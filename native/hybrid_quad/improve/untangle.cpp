@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 

@@ -62,30 +62,55 @@ void apply(Workpiece& piece, const Smoother& smoother, const Place& t) {
   piece.add_quad(oriented({t.b, t.x, t.y, n}), region);
 }
 
+/// Puts a ring of four quads inside q: for quads with features all around, where the template has no neighbour to use.
+void pillow(Workpiece& piece, const Smoother& smoother, int q) {
+  const EditMesh::Quad corners = piece.mesh.quad(q);
+  const int region = piece.region[q];
+  const Vector3 normal = smoother.frame(q).normal;
+  Vector3 centre = Vector3::Zero();
+  for (const int v : corners) centre += 0.25 * piece.mesh.positions[v];
+  EditMesh::Quad inner;
+  for (int i = 0; i < 4; ++i)
+    inner[i] = piece.add_vertex(0.5 * (piece.mesh.positions[corners[i]] + centre), region, normal);
+  piece.mesh.set_quad(q, inner, true);
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) & 3;
+    piece.add_quad({corners[i], corners[j], inner[j], inner[i]}, region);
+  }
+}
+
+bool try_places(Workpiece& piece, Smoother& smoother, int v, int q) {
+  constexpr double kGain = 1e-3;
+  constexpr double kGoodEnough = 0.1;  // a wedge's tip may be acute: any positive quality beats a straight corner
+  std::array<Place, 2> places;
+  int count = 0;
+  for (const bool mirrored : {false, true})
+    if (place_on(piece.mesh, v, q, mirrored, &places[count])) ++count;
+  if (count == 2 && price(piece.mesh, places[1].y) < price(piece.mesh, places[0].y)) std::swap(places[0], places[1]);
+  for (int i = 0; i < count; ++i) {
+    const Place place = places[i];
+    Trial trial(piece, smoother, {place.a, place.v, place.b, place.c, place.x, place.y});
+    apply(piece, smoother, place);
+    if (trial.keep(kGoodEnough, kGain)) return true;
+  }
+  constexpr double kFolded = 0.05;
+  if (smoother.signed_quality(q) > kFolded) return false;
+  const EditMesh::Quad corners = piece.mesh.quad(q);
+  Trial trial(piece, smoother, {corners.begin(), corners.end()});
+  pillow(piece, smoother, q);
+  return trial.keep(kGoodEnough, kGain);
+}
+
 }  // namespace
 
 int open_straight_corners(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr double kGoodEnough = 0.1;  // a wedge's tip may be acute: any positive quality beats a straight corner
   int opened = 0;
   const int n = piece.mesh.vertex_count();
   for (int v = 0; v < n; ++v) {
     if ((v & 1023) == 0) context.checkpoint();
     if (piece.mesh.is_free(v) || !has_straight_corner(piece.mesh, v)) continue;
     const int q = straight_quad(piece.mesh, v);
-    if (q < 0) continue;
-    std::array<Place, 2> places;
-    int count = 0;
-    for (const bool mirrored : {false, true})
-      if (place_on(piece.mesh, v, q, mirrored, &places[count])) ++count;
-    if (count == 2 && price(piece.mesh, places[1].y) < price(piece.mesh, places[0].y)) std::swap(places[0], places[1]);
-    for (int i = 0; i < count; ++i) {
-      const Place place = places[i];
-      Trial trial(piece, smoother, {place.a, place.v, place.b, place.c, place.x, place.y});
-      apply(piece, smoother, place);
-      if (!trial.keep(kGoodEnough, 0)) continue;
-      ++opened;
-      break;
-    }
+    if (q >= 0 && try_places(piece, smoother, v, q)) ++opened;
   }
   return opened;
 }

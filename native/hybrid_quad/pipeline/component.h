@@ -2,7 +2,7 @@
 
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/improve/improve.h"
-#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/stage_clock.h"
 

@@ -1,4 +1,4 @@
-#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/quality/quality.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hybrid_quad/mesh/mesh_quality.h"
+#include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/mesh/segment_index.h"
 #include "support/meshes.h"
 
