@@ -136,13 +136,11 @@ class OverlayBuilder {
     for (std::size_t i = 0; i < crossings.size(); ++i) {
       const Crossing& x = crossings[i];
       if (i > 0 && Wide(x.num) * crossings[i - 1].den == Wide(crossings[i - 1].num) * x.den) continue;
-      const bool both = i + 1 < crossings.size() && Wide(x.num) * crossings[i + 1].den == Wide(crossings[i + 1].num) * x.den;
+      // A grid point lies on a line of each family; an edge along a line of one meets it at the lines of the other.
+      const std::int64_t u = ordinal(Wide(start[0]) * x.den + Wide(d[0]) * x.num, x.den);
+      const std::int64_t v = ordinal(Wide(start[1]) * x.den + Wide(d[1]) * x.num, x.den);
       std::int8_t sign = 0;
-      if (both) {
-        const std::int64_t u = floor_div(Wide(start[0]) * x.den + Wide(d[0]) * x.num, Wide(x.den) * kGridUnit);
-        const std::int64_t v = floor_div(Wide(start[1]) * x.den + Wide(d[1]) * x.num, Wide(x.den) * kGridUnit);
-        sign = (u + v) & 1 ? -1 : 1;
-      }
+      if (u % 2 == 0 && v % 2 == 0) sign = (u + v) / 2 % 2 != 0 ? -1 : 1;
       const double t = static_cast<double>(x.num) / static_cast<double>(x.den);
       const int vertex = add_vertex(point_on(side, t), sign);
       points.push_back(own ? EdgePoint{x.num, x.den, vertex} : EdgePoint{x.den - x.num, x.den, vertex});
