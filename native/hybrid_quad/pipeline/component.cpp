@@ -6,6 +6,7 @@
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
+#include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
@@ -22,15 +23,17 @@ enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
 /// where quads came out that fold or have no area.
 struct Settings {
   double quads_factor = 1.0;
-  double least_length_ratio = 0.35;  ///< how far small features and thin parts may shorten edges
   double curl_weight = 1e-5;
+  double least_length_ratio = 0.35;  ///< how far small features and thin parts may shorten edges
+  double most_extra = 1.5;           ///< how many times the asked number of quads that may take
 };
 constexpr Settings kSettings[] = {
     {},
-    {1.05, 0.35, 1e-3},
-    {1.0, 0.2, 1e-5},
-    {1.4, 0.25, 1e-4},
-    {2.0, 0.2, 1e-5},
+    {1.05, 1e-3, 0.35, 1.5},
+    {1.0, 1e-5, 0.2, 2.0},
+    {1.5, 1e-4, 0.2, 3.0},
+    {2.5, 1e-5, 0.12, 5.0},
+    {4.0, 1e-4, 0.1, 8.0},
 };
 
 struct Extraction {
@@ -92,8 +95,6 @@ class ComponentRemesher {
 
  private:
   void prepare(const std::vector<std::array<int, 2>>& marked) {
-    // Small features may ask for more quads than the user did, within reason.
-    constexpr double kMostExtra = 1.5;
     const RunContext context = context_.in_stage("features", 0.0, 0.03);
     context.checkpoint();
     FeatureOptions features;
@@ -110,7 +111,7 @@ class ComponentRemesher {
       sizes.least_ratio = settings_.least_length_ratio;
       const std::vector<double> target =
           feature_sized_lengths(index, result_.features, length_, sizes, surface_context);
-      quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, kMostExtra * quads_asked_);
+      quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, settings_.most_extra * quads_asked_);
       return build_working_surface(mesh_, result_.features, target, WorkingSurfaceOptions{}, surface_context);
     });
     result_.working_faces = surface_.mesh.face_count();
@@ -191,6 +192,7 @@ class ComponentRemesher {
       if (euler_characteristic(complex) != mesh_.euler_characteristic())
         throw InternalError("assemble", "the quads have another topology than the surface");
       out.repair = repair_complex(complex);
+      open_straight_quads(complex);
       QuadMesh mesh = to_quad_mesh(complex);
       order_feature_edges(mesh, mesh_, result_.features);
       return mesh;

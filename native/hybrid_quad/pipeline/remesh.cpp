@@ -74,8 +74,24 @@ std::vector<std::array<int, 2>> marked_in(const Component& component, const Buil
   return out;
 }
 
-/// A component needs a few quads to be a mesh at all, however small it is.
-double least_quads(const TriangleMesh& mesh) { return mesh.euler_characteristic() == 2 ? 24 : 8; }
+int boundary_loops(const TriangleMesh& mesh) {
+  std::vector<char> seen(mesh.vertex_count(), 0);
+  int loops = 0;
+  for (int start = 0; start < mesh.vertex_count(); ++start) {
+    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
+    ++loops;
+    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
+  }
+  return loops;
+}
+
+/// A component needs some quads to be a mesh at all, however small it is, and more for every handle and hole.
+double least_quads(const TriangleMesh& mesh) {
+  constexpr double kSphere = 24, kHandle = 32, kHole = 8;
+  const int loops = boundary_loops(mesh);
+  const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
+  return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
+}
 
 void append(RemeshResult& result, const ComponentResult& component, const std::vector<int>& input_vertex) {
   const int base = static_cast<int>(result.mesh.positions.size());
