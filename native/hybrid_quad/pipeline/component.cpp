@@ -26,14 +26,16 @@ struct Settings {
   double curl_weight = 1e-5;
   double least_length_ratio = 0.35;  ///< how far small features and thin parts may shorten edges
   double most_extra = 1.5;           ///< how many times the asked number of quads that may take
+  bool for_small_parts_only = false; ///< a large component would get far too many quads
 };
+constexpr double kSmallPart = 300;   ///< quads
 constexpr Settings kSettings[] = {
     {},
     {1.05, 1e-3, 0.35, 1.5},
     {1.0, 1e-5, 0.2, 2.0},
     {1.5, 1e-4, 0.2, 3.0},
-    {2.5, 1e-5, 0.12, 5.0},
-    {4.0, 1e-4, 0.1, 8.0},
+    {2.5, 1e-5, 0.12, 5.0, true},
+    {4.0, 1e-4, 0.1, 8.0, true},
 };
 
 struct Extraction {
@@ -232,6 +234,15 @@ class ComponentRemesher {
 
 }  // namespace
 
+namespace {
+
+/// Flawed quads, each the worse the more quads were spent.
+double badness(const ComponentResult& result) {
+  return static_cast<double>(result.flawed_quads) * static_cast<double>(result.mesh.quads.size());
+}
+
+}  // namespace
+
 ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
                                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context) {
@@ -240,11 +251,12 @@ ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
   bool any = false;
   double begin = 0, end = 0.9;
   for (const Settings& settings : kSettings) {
+    if (any && settings.for_small_parts_only && quads_asked > kSmallPart) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       ComponentResult result = ComponentRemesher(mesh, quads_asked, options, settings, clock, pass).run(marked);
       result.passes = best.passes + 1;
-      if (!any || result.flawed_quads < best.flawed_quads)
+      if (!any || badness(result) < badness(best))
         best = std::move(result);
       else
         best.passes = result.passes;

@@ -211,7 +211,7 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface) {
-  constexpr double kAgainst = -0.15, kReach = 0.25;
+  constexpr double kAgainst = -0.15, kReach = 0.2;
   std::vector<int> inverted;
   for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q) {
     const auto& v = mesh.quads[q];
@@ -229,7 +229,7 @@ std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surfac
     if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) continue;
     SurfaceIndex::Filter along;
     along.normal = normal;
-    along.min_cosine = 1e-9;
+    along.min_cosine = 0.05;
     const SurfacePoint agreeing = surface.nearest(centre, along);
     if (agreeing.face < 0 || std::sqrt(agreeing.squared_distance) > std::sqrt(near.squared_distance) + kReach * size)
       inverted.push_back(q);

@@ -23,7 +23,7 @@ struct ShapeQuality {
 
 ShapeQuality shape_quality(const QuadMesh& mesh);
 
-/// Quads that point against the surface: against its nearest point and against all of it within a quarter of the quad's
+/// Quads that point against the surface: against its nearest point and against all of it within a fifth of the quad's
 /// mean edge length beyond that, so that the far side of a thin sheet does not count. Ascending.
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface);
 

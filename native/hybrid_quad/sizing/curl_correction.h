@@ -10,7 +10,7 @@ namespace hybrid_quad {
 struct CurlCorrectionOptions {
   double curl_weight = 1e-5;     ///< lambda
   double feature_weight = 30.0;
-  int max_raises = 3;              ///< solves with more lambda around folded faces, while they are more than
+  int max_raises = 1;              ///< solves with more lambda around folded faces, while they are more than
   double tolerated_folds = 1e-3;   ///< this share of all faces
 };
 
