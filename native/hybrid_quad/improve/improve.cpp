@@ -37,7 +37,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   ImproveReport report;
   if (quads.quads.empty() || input.face_count() == 0) return report;
   constexpr double kCurvatureWeight = 20;
-  constexpr int kSweepsAfter = 6;
+  constexpr int kSweepsAfter = 6, kLastRounds = 3;
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return report;
@@ -59,6 +59,13 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   }
   if (options.fit) fit_to_input(piece, smoother, context);
   report.inverted_after = untangle(piece, smoother, context);
+  // What relaxing alone can't untangle may come free with other neighbours.
+  for (int round = 0; round < kLastRounds && report.inverted_after > 0 && options.edit_connectivity; ++round) {
+    const int moves = improve_shapes(piece, smoother, context);
+    if (moves == 0) break;
+    report.connectivity_moves += moves;
+    report.inverted_after = untangle(piece, smoother, context);
+  }
   // Quads that were hopeless from the start can end up worse: then better leave them as they are.
   if (report.inverted_after > report.inverted_before) {
     report.inverted_after = report.inverted_before;

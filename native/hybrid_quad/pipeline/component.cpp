@@ -32,10 +32,14 @@ constexpr double kSmallPart = 300;   ///< quads
 constexpr Settings kSettings[] = {
     {},
     {1.05, 1e-3, 0.35, 1.5},
+    {0.96, 1e-5, 0.3, 1.5},
     {1.0, 1e-5, 0.2, 2.0},
+    {1.08, 1e-4, 0.3, 1.5},
+    {1.02, 1e-6, 0.4, 1.5},
     {1.5, 1e-4, 0.2, 3.0},
     {2.5, 1e-5, 0.12, 5.0, true},
     {4.0, 1e-4, 0.1, 8.0, true},
+    {3.2, 1e-5, 0.1, 8.0, true},
 };
 
 struct Extraction {
@@ -67,10 +71,11 @@ int quads_without_area(const QuadMesh& mesh) {
 
 class ComponentRemesher {
  public:
-  ComponentRemesher(const TriangleMesh& mesh, double quads_asked, const RemeshOptions& options, const Settings& settings,
+  ComponentRemesher(const TriangleMesh& mesh, double quads_asked, double usual_length, const RemeshOptions& options, const Settings& settings,
                     StageClock& clock, const RunContext& context)
       : mesh_(mesh),
         quads_asked_(quads_asked * settings.quads_factor),
+        usual_length_(usual_length),
         options_(options),
         settings_(settings),
         clock_(clock),
@@ -88,10 +93,11 @@ class ComponentRemesher {
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
     result_.mesh = std::move(best.mesh);
+    constexpr double kLeastSize = 0.4;
     const SurfaceIndex index(mesh_, result_.features.face_region);
     if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
-    result_.flawed_quads = static_cast<int>(inverted_quads(result_.mesh, index).size()) + quads_without_area(result_.mesh);
+    result_.flawed_quads = static_cast<int>(inverted_quads(result_.mesh, index, kLeastSize * usual_length_).size()) + quads_without_area(result_.mesh);
     return std::move(result_);
   }
 
@@ -223,6 +229,7 @@ class ComponentRemesher {
 
   const TriangleMesh& mesh_;
   double quads_asked_;
+  double usual_length_;
   const RemeshOptions& options_;
   const Settings& settings_;
   StageClock& clock_;
@@ -243,7 +250,7 @@ double badness(const ComponentResult& result) {
 
 }  // namespace
 
-ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
+ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked, double usual_length,
                                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context) {
   ComponentResult best;
@@ -254,7 +261,7 @@ ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
     if (any && settings.for_small_parts_only && quads_asked > kSmallPart) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
-      ComponentResult result = ComponentRemesher(mesh, quads_asked, options, settings, clock, pass).run(marked);
+      ComponentResult result = ComponentRemesher(mesh, quads_asked, usual_length, options, settings, clock, pass).run(marked);
       result.passes = best.passes + 1;
       if (!any || badness(result) < badness(best))
         best = std::move(result);

@@ -24,8 +24,9 @@ struct ComponentResult {
 
 /// Remeshes one connected component (paper 3 and 4, then improvement).
 /// \param quads_asked  for this component
+/// \param usual_length  quad edge length of the whole mesh (scene units)
 /// \param marked  pairs of the component's vertices that are features
-ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked,
+ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked, double usual_length,
                                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context);
 

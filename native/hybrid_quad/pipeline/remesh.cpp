@@ -163,7 +163,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.02 + 0.95 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.95 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(component.mesh, asked, marked_in(component, built, options.marked_edges), options, clock, part_context));
+    parts.push_back(remesh_component(component.mesh, asked, length, marked_in(component, built, options.marked_edges), options, clock, part_context));
     std::vector<int> input_vertex;
     for (const int v : component.vertex) input_vertex.push_back(built.input_vertex[v]);
     append(result, parts.back(), input_vertex);

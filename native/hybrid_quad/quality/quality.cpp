@@ -210,7 +210,7 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
   return quality;
 }
 
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface) {
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
   constexpr double kAgainst = -0.15, kReach = 0.2;
   std::vector<int> inverted;
   for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q) {
@@ -227,6 +227,10 @@ std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surfac
     }
     const SurfacePoint near = surface.nearest(centre);
     if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) continue;
+    if (size < least_size) {
+      inverted.push_back(q);
+      continue;
+    }
     SurfaceIndex::Filter along;
     along.normal = normal;
     along.min_cosine = 0.05;

@@ -25,7 +25,8 @@ ShapeQuality shape_quality(const QuadMesh& mesh);
 
 /// Quads that point against the surface: against its nearest point and against all of it within a fifth of the quad's
 /// mean edge length beyond that, so that the far side of a thin sheet does not count. Ascending.
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface);
+/// \param least_size  quads with shorter edges (mean, scene units) have no such excuse
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0);
 
 /// Distances in percent of the diagonal of the input's bounding box.
 struct SurfaceDistance {
