@@ -68,7 +68,7 @@ Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
 
 void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, double least_ratio, std::vector<double>& target,
                                  const RunContext& context) {
-  constexpr double kProbesPerQuad = 2;
+  constexpr double kProbesPerQuad = 4;
   const TriangleMesh& mesh = index.mesh();
   const double quads = mesh.total_area() / (length * length);
   const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / (kProbesPerQuad * quads)));

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hybrid_quad/sizing/feature_size.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+std::vector<double> lengths(const TriangleMesh& mesh, double length) {
+  const RunContext context;
+  const FeatureGraph features = detect_features(mesh, FeatureOptions{}, context);
+  return feature_sized_lengths(SurfaceIndex(mesh, {}), features, length, FeatureSizeOptions{}, context);
+}
+
+TEST(FeatureSize, LeavesRoomySurfacesAlone) {
+  for (const double h : lengths(test::icosphere(4), 0.2)) EXPECT_DOUBLE_EQ(h, 0.2);
+  for (const double h : lengths(test::box(12), 0.1)) EXPECT_DOUBLE_EQ(h, 0.1);
+}
+
+TEST(FeatureSize, GivesWayBetweenNearCurves) {
+  // A flat box: its upper and lower edges are 0.2 apart, less than a quad edge.
+  const TriangleMesh mesh = test::box(20, Vector3(4, 4, 0.2));
+  const std::vector<double> h = lengths(mesh, 0.5);
+  const FeatureSizeOptions options;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    EXPECT_LE(h[v], 0.5);
+    EXPECT_GE(h[v], options.least_ratio * 0.5 - 1e-12);
+    const Vector3& p = mesh.position(v);
+    const bool on_rim = std::min({p[0], p[1], 4 - p[0], 4 - p[1]}) < 1e-9;
+    if (on_rim) EXPECT_LT(h[v], 0.35) << p.transpose();
+  }
+}
+
+TEST(FeatureSize, GrowsNoFasterThanAllowed) {
+  const TriangleMesh mesh = test::box(20, Vector3(4, 4, 0.2));
+  const std::vector<double> h = lengths(mesh, 0.5);
+  for (int e = 0; e < mesh.halfedge_count(); ++e)
+    EXPECT_LE(h[mesh.to(e)], h[mesh.from(e)] + FeatureSizeOptions{}.growth * mesh.edge_length(e) + 1e-12);
+}
+
+TEST(FeatureSize, GivesTubesRoomForFourQuadsAround) {
+  constexpr double kRadius = 0.1, kLength = 0.25;
+  const TriangleMesh tube = test::open_cylinder(24, 60, kRadius, 4);
+  const std::vector<double> h = lengths(tube, kLength);
+  for (int v = 0; v < tube.vertex_count(); ++v) {
+    if (std::abs(tube.position(v)[2]) > 1.5) continue;
+    // Without the limit it would be 1; between probes the length may grow a little.
+    EXPECT_LT(4 * h[v], 2 * 3.15 * kRadius * 1.45);
+    EXPECT_GT(h[v], 0.5 * kLength);
+  }
+}
+
+TEST(FeatureSize, CountsQuads) {
+  const TriangleMesh mesh = test::flat_grid(10, 10, 3, 2);
+  EXPECT_NEAR(quads_for_lengths(mesh, std::vector<double>(mesh.vertex_count(), 0.1)), 600, 1e-6);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
