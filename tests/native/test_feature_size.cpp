@@ -29,7 +29,9 @@ TEST(FeatureSize, GivesWayBetweenNearCurves) {
     EXPECT_GE(h[v], options.least_ratio * 0.5 - 1e-12);
     const Vector3& p = mesh.position(v);
     const bool on_rim = std::min({p[0], p[1], 4 - p[0], 4 - p[1]}) < 1e-9;
-    if (on_rim) EXPECT_LT(h[v], 0.35) << p.transpose();
+    if (on_rim) {
+      EXPECT_LT(h[v], 0.35) << p.transpose();
+    }
   }
 }
 
