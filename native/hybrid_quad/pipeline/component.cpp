@@ -93,7 +93,7 @@ class ComponentRemesher {
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
     result_.mesh = std::move(best.mesh);
-    constexpr double kLeastSize = 0.4;
+    constexpr double kLeastSize = 0.8;
     const SurfaceIndex index(mesh_, result_.features.face_region);
     if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
