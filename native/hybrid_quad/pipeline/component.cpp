@@ -93,11 +93,16 @@ class ComponentRemesher {
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
     result_.mesh = std::move(best.mesh);
-    constexpr double kLeastSize = 0.8;
+    constexpr double kLeastSize = 0.4, kUsualSize = 0.8;
     const SurfaceIndex index(mesh_, result_.features.face_region);
     if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
-    result_.flawed_quads = static_cast<int>(inverted_quads(result_.mesh, index, kLeastSize * usual_length_).size()) + quads_without_area(result_.mesh);
+    const int without_area = quads_without_area(result_.mesh);
+    const auto inverted_below = [&](double size) {
+      return static_cast<int>(inverted_quads(result_.mesh, index, size * usual_length_).size());
+    };
+    result_.flawed_quads = without_area + inverted_below(kLeastSize);
+    result_.doubtful_quads = without_area + inverted_below(kUsualSize);
     return std::move(result_);
   }
 
@@ -243,9 +248,10 @@ class ComponentRemesher {
 
 namespace {
 
-/// Flawed quads, each the worse the more quads were spent.
+/// Flawed quads, each the worse the more quads were spent; doubtful ones only where there are none.
 double badness(const ComponentResult& result) {
-  return static_cast<double>(result.flawed_quads) * static_cast<double>(result.mesh.quads.size());
+  const double quads = static_cast<double>(result.mesh.quads.size());
+  return (result.flawed_quads + 1e-6 * result.doubtful_quads) * quads;
 }
 
 }  // namespace
@@ -268,7 +274,7 @@ ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked, d
       else
         best.passes = result.passes;
       any = true;
-      if (best.flawed_quads == 0) break;
+      if (best.doubtful_quads == 0) break;
     } catch (const InternalError& error) {
       broken = error.what();
       ++best.passes;

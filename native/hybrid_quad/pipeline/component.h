@@ -18,6 +18,7 @@ struct ComponentResult {
   double area = 0, singular_area = 0, combinatorial_area = 0;
   PatchRecord patches;
   int flawed_quads = 0;  ///< quads that point against the surface or have no area
+  int doubtful_quads = 0;  ///< these and smaller ones that only just pass that test
   int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;
 };
