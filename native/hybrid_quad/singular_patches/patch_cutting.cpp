@@ -11,16 +11,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// The step of a phase from p to q that is nearest to what is wanted.
-double lifted_step(const std::complex<double>& p, const std::complex<double>& q, double wanted) {
-  const double base = std::arg(q * std::conj(p));
-  return base + 2 * kPi * std::round((wanted - base) / (2 * kPi));
-}
-
-std::array<double, 2> lifted_step(const PhasePair& p, const PhasePair& q, const std::array<double, 2>& wanted) {
-  return {lifted_step(p.a, q.a, wanted[0]), lifted_step(p.b, q.b, wanted[1])};
-}
-
 PhasePair phase_of(const Vector2& uv) {
   return {std::polar(1.0, kPi * (uv[0] + uv[1])), std::polar(1.0, kPi * (uv[0] - uv[1]))};
 }
@@ -265,6 +255,14 @@ class PatchCutter {
 };
 
 }  // namespace
+
+std::array<double, 2> lifted_step(const PhasePair& p, const PhasePair& q, const std::array<double, 2>& wanted) {
+  const auto lift = [](const std::complex<double>& from, const std::complex<double>& to, double step) {
+    const double base = std::arg(to * std::conj(from));
+    return base + 2 * kPi * std::round((step - base) / (2 * kPi));
+  };
+  return {lift(p.a, q.a, wanted[0]), lift(p.b, q.b, wanted[1])};
+}
 
 PatchTriangles triangulate_patch(const GridOverlay& overlay, const SpanningParameterization& param,
                                  const WorkingSurface& surface, const FrameField& frames,

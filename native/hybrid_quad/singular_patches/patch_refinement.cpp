@@ -28,14 +28,6 @@ PhasePair advanced(const PhasePair& p, const std::array<double, 2>& step, double
   return {p.a * std::polar(1.0, part * step[0]), p.b * std::polar(1.0, part * step[1])};
 }
 
-std::array<double, 2> between(const PhasePair& p, const PhasePair& q, const std::array<double, 2>& wanted) {
-  const auto lift = [](const std::complex<double>& x, const std::complex<double>& y, double w) {
-    const double base = std::arg(y * std::conj(x));
-    return base + 2 * kPi * std::round((w - base) / (2 * kPi));
-  };
-  return {lift(p.a, q.a, wanted[0]), lift(p.b, q.b, wanted[1])};
-}
-
 /// One round: every marked edge is halved, every face cut to fit (one, two or four parts a face).
 class RefinementRound {
  public:
@@ -117,7 +109,7 @@ class RefinementRound {
         const double part = marked_[from[i]] ? 0.5 : 1.0;
         step[i] = {part * in_.step[from[i]][0], part * in_.step[from[i]][1]};
       } else {
-        step[i] = between(p[i].phase, q.phase, {closes_[0] ? q.local[0] - p[i].local[0] : 0.0,
+        step[i] = lifted_step(p[i].phase, q.phase, {closes_[0] ? q.local[0] - p[i].local[0] : 0.0,
                                                 closes_[1] ? q.local[1] - p[i].local[1] : 0.0});
       }
     }

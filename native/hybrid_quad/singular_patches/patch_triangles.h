@@ -23,6 +23,9 @@ struct PatchTriangles {
   std::vector<std::array<double, 2>> arc_span;  ///< 3 #F: where on the arc, from 0 to 1, the border half-edge begins and ends
 };
 
+/// The steps of the two phases (radians) from p to q that are nearest to what is wanted.
+std::array<double, 2> lifted_step(const PhasePair& p, const PhasePair& q, const std::array<double, 2>& wanted);
+
 /// The pieces of one patch as triangles. \param pieces overlay pieces of the patch, ascending
 PatchTriangles triangulate_patch(const GridOverlay& overlay, const SpanningParameterization& param,
                                  const WorkingSurface& surface, const FrameField& frames,
