@@ -31,6 +31,19 @@ py::dict dict_of_patches(const PatchRecord& patches) {
   return result;
 }
 
+py::dict dict_of_repairs(const RepairRecord& repairs) {
+  py::dict result;
+  result["broken_promises"] = repairs.broken_promises;
+  result["released_quads"] = repairs.released_quads;
+  result["removed_quads"] = repairs.removed_quads;
+  result["added_rings"] = repairs.added_rings;
+  result["split_polychords"] = repairs.split_polychords;
+  result["opened_straight_quads"] = repairs.opened_straight_quads;
+  result["mended_places"] = repairs.mended_places;
+  result["restored_quads"] = repairs.restored_quads;
+  return result;
+}
+
 py::list list_of_stages(const std::vector<StageRecord>& stages) {
   py::list result;
   for (const StageRecord& stage : stages) {
@@ -61,6 +74,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["dislocations_found"] = report.dislocations_found;
   result["singular_area_fraction"] = report.singular_area_fraction;
   result["patches"] = dict_of_patches(report.patches);
+  result["repairs"] = dict_of_repairs(report.repairs);
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;

@@ -58,7 +58,7 @@ std::vector<int> crowded_vertices(const Workpiece& piece) {
     bool beside = false;
     for (const int q : piece.mesh.quads_at(v))
       for (const int w : piece.mesh.quad(q)) beside |= crowded[w] != 0;
-    if (beside && piece.mesh.is_free(v) && piece.face[v] >= 0) vertices.push_back(v);
+    if (beside && piece.mesh.is_free(v) && !piece.mesh.is_pinned(v) && piece.face[v] >= 0) vertices.push_back(v);
   }
   return vertices;
 }
@@ -93,7 +93,7 @@ bool remove_pillow(EditMesh& mesh, int q) {
   std::array<int, 4> ring;
   for (int i = 0; i < 4; ++i) {
     const int v = inner[i];
-    if (!mesh.is_free(v) || mesh.on_boundary(v) || !mesh.feature_links(v).empty() || mesh.valence(v) != 3) return false;
+    if (!mesh.is_free(v) || mesh.is_pinned(v) || mesh.on_boundary(v) || !mesh.feature_links(v).empty() || mesh.valence(v) != 3) return false;
     ring[i] = mesh.across(q, i);
     if (ring[i] < 0) return false;
     // Across side i the ring's quad runs (.., inner[i + 1], inner[i], outer[i], outer[i + 1]).

@@ -9,6 +9,8 @@ EditMesh::EditMesh(const QuadMesh& mesh, const TriangleMesh& input, const Featur
     : positions(mesh.positions),
       quads_(mesh.quads),
       alive_(mesh.quads.size(), 1),
+      locked_(mesh.quads.size(), 0),
+      pinned_(mesh.positions.size(), 0),
       incident_(mesh.positions.size()),
       kind_(mesh.kind),
       anchor_(mesh.anchor),
@@ -118,6 +120,11 @@ int EditMesh::least_valence(int v) const {
   return kind_[v] == VertexKind::kCorner ? 1 : 2;
 }
 
+void EditMesh::lock(int q) {
+  locked_[q] = 1;
+  for (const int v : quads_[q]) pinned_[v] = 1;
+}
+
 void EditMesh::set_quad(int q, const Quad& corners, bool is_alive) {
   log_.push_back({q, quads_[q], alive_[q]});
   replace(q, corners, is_alive);
@@ -141,6 +148,7 @@ int EditMesh::add_vertex(const Vector3& position, int region) {
   kind_.push_back(VertexKind::kFree);
   anchor_.push_back(region);
   boundary_.push_back(0);
+  pinned_.push_back(0);
   links_.emplace_back();
   return vertex_count() - 1;
 }
@@ -148,6 +156,7 @@ int EditMesh::add_vertex(const Vector3& position, int region) {
 int EditMesh::add_quad(const Quad& corners) {
   quads_.push_back(corners);
   alive_.push_back(0);
+  locked_.push_back(0);
   set_quad(quad_count() - 1, corners, true);
   return quad_count() - 1;
 }

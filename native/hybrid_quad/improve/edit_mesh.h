@@ -49,6 +49,11 @@ class EditMesh {
   /// Fewest quads a vertex may be left with.
   int least_valence(int v) const;
 
+  /// Keeps q as it is: no move touches it, and its vertices stay where they are.
+  void lock(int q);
+  bool is_locked(int q) const { return locked_[q] != 0; }
+  bool is_pinned(int v) const { return pinned_[v] != 0; }
+
   /// Replaces the corners of q, or removes it; remembered for undo.
   void set_quad(int q, const Quad& corners, bool is_alive);
   int add_vertex(const Vector3& position, int region);
@@ -69,7 +74,8 @@ class EditMesh {
   void find_ideals(const TriangleMesh& input, const FeatureGraph& features);
 
   std::vector<Quad> quads_;
-  std::vector<char> alive_;
+  std::vector<char> alive_, locked_;
+  std::vector<char> pinned_;  // #V: some quad there is locked
   std::vector<std::vector<int>> incident_;
   std::vector<VertexKind> kind_;
   std::vector<int> anchor_;

@@ -106,7 +106,7 @@ void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& contex
   }
   const std::vector<Vector3> kept = piece.mesh.positions;
   for (int v = 0; v < n; ++v) {
-    if (!piece.mesh.is_free(v) || piece.mesh.valence(v) == 0 || !(weight[v] > 0)) continue;
+    if (!piece.mesh.is_free(v) || piece.mesh.is_pinned(v) || piece.mesh.valence(v) == 0 || !(weight[v] > 0)) continue;
     double area = 0;
     for (const int q : piece.mesh.quads_at(v)) area += smoother.frame(q).area;
     const double limit = kLargestMove * std::sqrt(area / piece.mesh.valence(v)), d = sum[v] / weight[v];

@@ -2,11 +2,14 @@
 
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
+#include "hybrid_quad/improve/mend.h"
+#include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/untangle.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/wedge_template.h"
 #include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -30,17 +33,18 @@ int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& co
   return moves;
 }
 
-}  // namespace
-
-ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
-                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context) {
+/// One round of everything; quads in `locked` stay as they are.
+ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, const TriangleMesh& input,
+                           const FeatureGraph& features, const SurfaceIndex& index, const ImproveOptions& options,
+                           const RunContext& context) {
   ImproveReport report;
-  if (quads.quads.empty() || input.face_count() == 0) return report;
   constexpr double kCurvatureWeight = 20;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return report;
+  for (int q = 0; q < piece.mesh.quad_count(); ++q)
+    if (locked[q]) piece.mesh.lock(q);
   report.inverted_before = static_cast<int>(tangled_quads(piece).size());
   piece.bind_all();
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
@@ -66,13 +70,41 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     report.connectivity_moves += moves;
     report.inverted_after = untangle(piece, smoother, context);
   }
-  // Quads that were hopeless from the start can end up worse: then better leave them as they are.
-  if (report.inverted_after > report.inverted_before) {
-    report.inverted_after = report.inverted_before;
+  report.mended = mend_flawed(piece, smoother, options.usual_size, context);
+  quads = piece.mesh.extract();
+  return report;
+}
+
+}  // namespace
+
+ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
+                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context) {
+  if (quads.quads.empty() || input.face_count() == 0) return {};
+  constexpr int kAttempts = 5;
+  Restoration restoration(quads, index, options.usual_size);
+  QuadMesh best;
+  ImproveReport report;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    QuadMesh improved = quads;
+    ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, options, context);
+    const std::vector<int> flawed = flawed_quads(improved, index, options.usual_size);
+    now.flawed_before = restoration.flawed_before();
+    now.flawed_after = static_cast<int>(flawed.size());
+    now.restored_quads = restoration.locked_count();
+    const bool go_on = !flawed.empty() && restoration.give_up_around(improved, flawed);
+    if (attempt == 0 || now.flawed_after < report.flawed_after) {
+      best = std::move(improved);
+      report = now;
+    }
+    if (!go_on) break;
+  }
+  if (report.flawed_after > report.flawed_before) {
     report.connectivity_moves = 0;
+    report.flawed_after = report.flawed_before;
+    report.restored_quads = static_cast<int>(quads.quads.size());
     return report;
   }
-  quads = piece.mesh.extract();
+  quads = std::move(best);
   return report;
 }
 

@@ -13,17 +13,21 @@ struct ImproveOptions {
   double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double target_length = 0;        ///< mean quad edge, 0 = measured
+  double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (inverted_quads)
 };
 
 struct ImproveReport {
   int connectivity_moves = 0;
   int inverted_before = 0, inverted_after = 0;
-  int refined_quads = 0;           ///< quads added where the surface folds below the quad size
+  int flawed_before = 0, flawed_after = 0;  ///< flawed_quads
+  int mended = 0;                  ///< changes that only flawed quads called for
+  int restored_quads = 0;          ///< quads left as they were extracted, where improving them brought flaws
 };
 
 /// Makes the quads good without leaving the surface: connectivity moves that lower the valence cost, then smoothing and
 /// untangling (regularised corner energy) with vertices on the input surface, curve vertices on their curves and corners
-/// fixed. Never makes a valid mesh invalid (checked move by move).
+/// fixed. Never makes a valid mesh invalid (checked move by move), and gives up on places that come out flawed but were not
+/// before: these stay as they are.
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context);
 

@@ -29,7 +29,7 @@ bool neighbours(const EditMesh& mesh, int v, int w) { return v == w || mesh.has_
 
 bool may_collapse(const EditMesh& mesh, const Move& move, Changed* changed) {
   int kept, gone;
-  if (!collapse_ends(mesh, move, &kept, &gone)) return false;
+  if (!collapse_ends(mesh, move, &kept, &gone) || mesh.is_pinned(gone)) return false;
   const auto& corners = mesh.quad(move.quad);
   const int a = corners[(move.corner + 1) & 3], b = corners[(move.corner + 3) & 3];
   if (mesh.valence(a) <= mesh.least_valence(a) || mesh.valence(b) <= mesh.least_valence(b)) return false;
@@ -64,6 +64,7 @@ bool may_rotate(const EditMesh& mesh, const Move& move, Changed* changed) {
   if (mesh.is_feature(b, c)) return false;
   Hexagon hexagon;
   if (!hexagon_of(mesh, move, &hexagon)) return false;
+  if (mesh.is_locked(move.quad) || mesh.is_locked(hexagon.other)) return false;
   const int from = move.kind == Move::kRotateBack ? hexagon.a : hexagon.x;
   const int to = move.kind == Move::kRotateBack ? hexagon.y : hexagon.d;
   if (neighbours(mesh, from, to)) return false;

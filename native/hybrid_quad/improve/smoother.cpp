@@ -209,7 +209,7 @@ bool Smoother::may_slide(int v) const {
 }
 
 double Smoother::move(int v) {
-  if (piece_.mesh.valence(v) == 0) return 0;
+  if (piece_.mesh.valence(v) == 0 || piece_.mesh.is_pinned(v)) return 0;
   const double size = edge_size(v);
   if (!(size > 0)) return 0;
   if (piece_.mesh.is_free(v)) return piece_.face[v] >= 0 ? move_free(v, size) / size : 0;

@@ -58,7 +58,7 @@ int untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
     arcs.push_back(piece.arc[v]);
   }
   for (const int v : inside)
-    if (piece.mesh.is_free(v) && piece.face[v] >= 0) {
+    if (piece.mesh.is_free(v) && !piece.mesh.is_pinned(v) && piece.face[v] >= 0) {
       const SurfacePoint point = piece.walk(piece.mesh.positions[v], piece.face[v]);
       piece.mesh.positions[v] = point.position;
       piece.face[v] = point.face;

@@ -3,7 +3,8 @@
 #include <array>
 #include <utility>
 
-#include "hybrid_quad/improve/valence_moves.h"
+#include "hybrid_quad/improve/quad_moves.h"
+#include "hybrid_quad/improve/trial.h"
 
 namespace hybrid_quad {
 
@@ -33,7 +34,7 @@ bool place_on(const EditMesh& mesh, int v, int q, bool mirrored, Place* place) {
   if (mesh.is_feature(b, far)) return false;
   const int side = mirrored ? (i + 2) & 3 : (i + 1) & 3;
   const int other = mesh.across(q, side);
-  if (other < 0) return false;
+  if (other < 0 || mesh.is_locked(q) || mesh.is_locked(other)) return false;
   const auto& o = mesh.quad(other);
   const int k = mesh.corner_of(other, far);
   // Unmirrored the neighbour reads (c, b, x, y); mirrored, (c, y, x, b).
@@ -94,7 +95,7 @@ bool try_places(Workpiece& piece, Smoother& smoother, int v, int q) {
     if (trial.keep(kGoodEnough, kGain)) return true;
   }
   constexpr double kFolded = 0.05;
-  if (smoother.signed_quality(q) > kFolded) return false;
+  if (smoother.signed_quality(q) > kFolded || piece.mesh.is_locked(q)) return false;
   const EditMesh::Quad corners = piece.mesh.quad(q);
   Trial trial(piece, smoother, {corners.begin(), corners.end()});
   pillow(piece, smoother, q);

@@ -57,10 +57,13 @@ void Workpiece::bind_all() {
     for (const int corner : v) normals[corner] += n;
   }
   for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (mesh.is_free(v))
+    if (mesh.is_free(v)) {
+      const Vector3 extracted = mesh.positions[v];
       bind_free(v, normals[v]);
-    else if (mesh.kind(v) == VertexKind::kCorner && mesh.anchor(v) >= 0 && mesh.anchor(v) < input.vertex_count())
+      if (mesh.is_pinned(v)) mesh.positions[v] = extracted;
+    } else if (mesh.kind(v) == VertexKind::kCorner && mesh.anchor(v) >= 0 && mesh.anchor(v) < input.vertex_count()) {
       mesh.positions[v] = input.position(mesh.anchor(v));
+    }
   place_on_curves();
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
@@ -20,34 +20,23 @@ namespace {
 enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
 
 /// Settings of one whole pass over a component. The first are the defaults; the others are tried, in this order, only
-/// where quads came out that fold or have no area.
+/// where quads came out that fold or have no area, each with shorter edges where that happened before.
 struct Settings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
-  double least_length_ratio = 0.35;  ///< how far small features and thin parts may shorten edges
-  double most_extra = 1.5;           ///< how many times the asked number of quads that may take
-  bool for_small_parts_only = false; ///< a large component would get far too many quads
 };
-constexpr double kSmallPart = 300;   ///< quads
-constexpr Settings kSettings[] = {
-    {},
-    {1.05, 1e-3, 0.35, 1.5},
-    {0.96, 1e-5, 0.3, 1.5},
-    {1.0, 1e-5, 0.2, 2.0},
-    {1.08, 1e-4, 0.3, 1.5},
-    {1.02, 1e-6, 0.4, 1.5},
-    {1.5, 1e-4, 0.2, 3.0},
-    {2.5, 1e-5, 0.12, 5.0, true},
-    {4.0, 1e-4, 0.1, 8.0, true},
-    {3.2, 1e-5, 0.1, 8.0, true},
-};
+constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
+constexpr double kShorterWhereFlawed = 0.6;
+// Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
+// ones hardly any.
+constexpr double kLeastSize = 0.009, kDoubtfulSize = 0.018;
 
 struct Extraction {
   QuadMesh mesh;
   SpanningParameterization param;
   int patch_count = 0, combinatorial_count = 0;
   double singular_area = 0, combinatorial_area = 0;
-  ComplexRepairReport repair;
+  RepairRecord repairs;
 };
 
 template <class Violations>
@@ -55,36 +44,24 @@ void require_sound(const std::string& stage, const Violations& violations) {
   if (!violations.empty()) throw InternalError(stage, violations.front());
 }
 
-int quads_without_area(const QuadMesh& mesh) {
-  // Of the squared mean edge length, as the smallest area that still counts as a face.
-  constexpr double kLeastArea = 1e-10;
-  double sum = 0;
-  const auto point = [&](const std::array<int, 4>& q, int i) { return mesh.positions[q[i & 3]]; };
-  for (const auto& q : mesh.quads)
-    for (int i = 0; i < 4; ++i) sum += (point(q, i + 1) - point(q, i)).norm();
-  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
-  int count = 0;
-  for (const auto& q : mesh.quads)
-    count += 0.5 * (point(q, 2) - point(q, 0)).cross(point(q, 3) - point(q, 1)).norm() <= kLeastArea * mean * mean;
-  return count;
-}
-
 class ComponentRemesher {
  public:
-  ComponentRemesher(const TriangleMesh& mesh, double quads_asked, double usual_length, const RemeshOptions& options, const Settings& settings,
+  /// \param whole_area  of the surface that the component is part of
+  ComponentRemesher(const ComponentPlan& plan, double whole_area, const RemeshOptions& options, const Settings& settings,
                     StageClock& clock, const RunContext& context)
-      : mesh_(mesh),
-        quads_asked_(quads_asked * settings.quads_factor),
-        usual_length_(usual_length),
+      : plan_(plan),
+        mesh_(plan.mesh),
+        doubtful_size_(kDoubtfulSize * std::sqrt(whole_area)),
+        least_size_(kLeastSize * std::sqrt(whole_area)),
         options_(options),
         settings_(settings),
         clock_(clock),
         context_(context) {}
 
-  ComponentResult run(const std::vector<std::array<int, 2>>& marked) {
+  ComponentResult run() {
     result_.area = mesh_.total_area();
-    length_ = std::sqrt(result_.area / quads_asked_);
-    prepare(marked);
+    length_ = std::sqrt(result_.area / plan_.quads);
+    prepare();
     const FrameField unit = solve_field();
     Extraction best = extract_with_count(unit);
     result_.dislocations_found = best.param.dislocations_found;
@@ -92,40 +69,24 @@ class ComponentRemesher {
     result_.patches = {best.patch_count, best.patch_count - best.combinatorial_count, best.combinatorial_count, 0};
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
+    result_.repairs += best.repairs;
     result_.mesh = std::move(best.mesh);
-    constexpr double kLeastSize = 0.4, kUsualSize = 0.8;
-    const SurfaceIndex index(mesh_, result_.features.face_region);
+    const SurfaceIndex index(mesh_, plan_.features.face_region);
     if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
-    const int without_area = quads_without_area(result_.mesh);
-    const auto inverted_below = [&](double size) {
-      return static_cast<int>(inverted_quads(result_.mesh, index, size * usual_length_).size());
-    };
-    result_.flawed_quads = without_area + inverted_below(kLeastSize);
-    result_.doubtful_quads = without_area + inverted_below(kUsualSize);
+    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, index, least_size_).size());
+    const std::vector<int> doubtful = flawed_quads(result_.mesh, index, doubtful_size_);
+    result_.doubtful_quads = static_cast<int>(doubtful.size());
+    for (const int q : doubtful) result_.limits.push_back(shorter_at(index, q));
     return std::move(result_);
   }
 
  private:
-  void prepare(const std::vector<std::array<int, 2>>& marked) {
-    const RunContext context = context_.in_stage("features", 0.0, 0.03);
-    context.checkpoint();
-    FeatureOptions features;
-    features.use_sharp_angle = options_.use_sharp_angle;
-    features.sharp_angle = options_.sharp_angle;
-    features.minimum_length = 3 * length_;
-    features.marked_edges = marked;
-    result_.features = clock_.measure("features", [&] { return detect_features(mesh_, features, context); });
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, result_.features));
-    const RunContext surface_context = context_.in_stage("working surface", 0.03, 0.2);
+  void prepare() {
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
     surface_ = clock_.measure("working surface", [&] {
-      const SurfaceIndex index(mesh_, {});
-      FeatureSizeOptions sizes;
-      sizes.least_ratio = settings_.least_length_ratio;
-      const std::vector<double> target =
-          feature_sized_lengths(index, result_.features, length_, sizes, surface_context);
-      quads_asked_ = std::clamp(quads_for_lengths(mesh_, target), quads_asked_, settings_.most_extra * quads_asked_);
-      return build_working_surface(mesh_, result_.features, target, WorkingSurfaceOptions{}, surface_context);
+      return build_working_surface(mesh_, plan_.features, plan_.target, WorkingSurfaceOptions{},
+                                   context_.in_stage("working surface", 0, 0.2));
     });
     result_.working_faces = surface_.mesh.face_count();
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
@@ -144,18 +105,18 @@ class ComponentRemesher {
     constexpr int kTries = 3;
     constexpr double kTolerance = 0.04;
     Extraction best;
-    double best_error = 0, asked = quads_asked_;
+    double best_error = 0, asked = plan_.quads;
     for (int i = 0; i < kTries; ++i) {
       Extraction current = extract_by_any_means(unit, asked);
       const double got = static_cast<double>(current.mesh.quads.size());
-      const double error = std::abs(std::log(got / quads_asked_));
+      const double error = std::abs(std::log(got / plan_.quads));
       const bool better = i == 0 || error < best_error;
       if (better) {
         best = std::move(current);
         best_error = error;
       }
-      if (best_error < kTolerance || !better || quads_asked_ < 100) break;
-      asked *= std::clamp(quads_asked_ / got, 0.4, 2.5);
+      if (best_error < kTolerance || !better || plan_.quads < 100) break;
+      asked *= std::clamp(plan_.quads / got, 0.4, 2.5);
     }
     return best;
   }
@@ -165,6 +126,7 @@ class ComponentRemesher {
       try {
         return extract(unit, asked, attempt);
       } catch (const InternalError& error) {
+        ++result_.repairs.broken_promises;
         result_.warnings.push_back(std::string("fell back after a broken promise in ") + error.what());
       }
     }
@@ -204,10 +166,14 @@ class ComponentRemesher {
       require_sound("assemble", violations_of(complex));
       if (euler_characteristic(complex) != mesh_.euler_characteristic())
         throw InternalError("assemble", "the quads have another topology than the surface");
-      out.repair = repair_complex(complex);
-      open_straight_quads(complex);
+      const ComplexRepairReport repair = repair_complex(complex);
+      out.repairs.released_quads = singular.released_cells;
+      out.repairs.removed_quads = repair.cancelled_singlets + repair.merged_doublets;
+      out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
+      out.repairs.split_polychords = repair.split_polychords;
+      out.repairs.opened_straight_quads = open_straight_quads(complex);
       QuadMesh mesh = to_quad_mesh(complex);
-      order_feature_edges(mesh, mesh_, result_.features);
+      order_feature_edges(mesh, mesh_, plan_.features);
       return mesh;
     });
     require_sound("assemble", violations_of(out.mesh));
@@ -221,20 +187,32 @@ class ComponentRemesher {
     return out;
   }
 
+  /// A limit below the length that was asked at quad q.
+  LengthLimit shorter_at(const SurfaceIndex& index, int q) const {
+    Vector3 centre = Vector3::Zero();
+    for (const int v : result_.mesh.quads[q]) centre += 0.25 * result_.mesh.positions[v];
+    double length = std::numeric_limits<double>::infinity();
+    for (const int v : mesh_.face(index.nearest(centre).face)) length = std::min(length, plan_.target[v]);
+    return {centre, kShorterWhereFlawed * length};
+  }
+
   void improve(const SurfaceIndex& index) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
     clock_.measure("improve", [&] {
       ImproveOptions o;
       o.fit = options_.fit;
       o.target_length = length_;
-      improve_quads(result_.mesh, mesh_, result_.features, index, o, context);
+      o.usual_size = doubtful_size_;
+      const ImproveReport report = improve_quads(result_.mesh, mesh_, plan_.features, index, o, context);
+      result_.repairs.mended_places += report.mended;
+      result_.repairs.restored_quads += report.restored_quads;
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(result_.mesh, "improve"));
   }
 
+  const ComponentPlan& plan_;
   const TriangleMesh& mesh_;
-  double quads_asked_;
-  double usual_length_;
+  double doubtful_size_, least_size_;  // scene units
   const RemeshOptions& options_;
   const Settings& settings_;
   StageClock& clock_;
@@ -256,18 +234,20 @@ double badness(const ComponentResult& result) {
 
 }  // namespace
 
-ComponentResult remesh_component(const TriangleMesh& mesh, double quads_asked, double usual_length,
-                                 const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
+ComponentResult remesh_component(const ComponentPlan& plan, double whole_area, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context) {
   ComponentResult best;
   std::string broken;
   bool any = false;
   double begin = 0, end = 0.9;
+  std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
-    if (any && settings.for_small_parts_only && quads_asked > kSmallPart) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
-      ComponentResult result = ComponentRemesher(mesh, quads_asked, usual_length, options, settings, clock, pass).run(marked);
+      const bool refined = !limits.empty() || settings.quads_factor != 1;
+      const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, limits) : ComponentPlan{};
+      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole_area, options, settings, clock, pass).run();
+      limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       if (!any || badness(result) < badness(best))
         best = std::move(result);

@@ -74,25 +74,6 @@ std::vector<std::array<int, 2>> marked_in(const Component& component, const Buil
   return out;
 }
 
-int boundary_loops(const TriangleMesh& mesh) {
-  std::vector<char> seen(mesh.vertex_count(), 0);
-  int loops = 0;
-  for (int start = 0; start < mesh.vertex_count(); ++start) {
-    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
-    ++loops;
-    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
-  }
-  return loops;
-}
-
-/// A component needs some quads to be a mesh at all, however small it is, and more for every handle and hole.
-double least_quads(const TriangleMesh& mesh) {
-  constexpr double kSphere = 24, kHandle = 32, kHole = 8;
-  const int loops = boundary_loops(mesh);
-  const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
-  return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
-}
-
 void append(RemeshResult& result, const ComponentResult& component, const std::vector<int>& input_vertex) {
   const int base = static_cast<int>(result.mesh.positions.size());
   const QuadMesh& m = component.mesh;
@@ -110,6 +91,7 @@ void append(RemeshResult& result, const ComponentResult& component, const std::v
   r.field_singularities += component.field_singularities;
   r.dislocations += component.dislocations;
   r.dislocations_found += component.dislocations_found;
+  r.repairs += component.repairs;
   r.flawed_quads += component.flawed_quads;
   r.extra_passes += component.passes - 1;
   r.patches.count += component.patches.count;
@@ -118,7 +100,7 @@ void append(RemeshResult& result, const ComponentResult& component, const std::v
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
 }
 
-void measure_quality(RemeshResult& result, const std::vector<Component>& components,
+void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
                      const std::vector<ComponentResult>& parts, const TriangleMesh& whole, const RunContext& context) {
   RemeshReport& r = result.report;
   const ShapeQuality shape = shape_quality(result.mesh);
@@ -131,12 +113,24 @@ void measure_quality(RemeshResult& result, const std::vector<Component>& compone
   r.mean_distance_percent = distance.mean;
   const double diagonal = whole.diagonal();
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double percent = feature_distance(parts[i].mesh, components[i].mesh, parts[i].features, context);
-    r.feature_hausdorff_percent = std::max(r.feature_hausdorff_percent, percent * components[i].mesh.diagonal() / diagonal);
+    const double percent = feature_distance(parts[i].mesh, plans[i].mesh, plans[i].features, context);
+    r.feature_hausdorff_percent = std::max(r.feature_hausdorff_percent, percent * plans[i].mesh.diagonal() / diagonal);
   }
 }
 
 }  // namespace
+
+RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
+  broken_promises += other.broken_promises;
+  released_quads += other.released_quads;
+  removed_quads += other.removed_quads;
+  added_rings += other.added_rings;
+  split_polychords += other.split_polychords;
+  opened_straight_quads += other.opened_straight_quads;
+  mended_places += other.mended_places;
+  restored_quads += other.restored_quads;
+  return *this;
+}
 
 RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
   RemeshResult result;
@@ -155,17 +149,24 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   const double area = built.mesh.total_area();
   const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(area / std::max(1, options.quads));
 
+  std::vector<ComponentPlan> plans;
+  clock.measure("features and sizes", [&] {
+    const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
+    for (const Component& component : components)
+      plans.push_back(plan_component(component.mesh, length, marked_in(component, built, options.marked_edges), options, plan_context));
+    if (!(options.edge_length > 0)) balance_plans(plans, options.quads);
+  });
+
   std::vector<ComponentResult> parts;
   double done = 0, singular_area = 0, combinatorial_area = 0;
-  for (const Component& component : components) {
-    const double share = component.mesh.total_area() / area;
-    const double asked = std::max(least_quads(component.mesh), component.mesh.total_area() / (length * length));
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const double share = components[i].mesh.total_area() / area;
     RunContext part_context = context;
-    part_context.stage_begin = context.stage_begin + (0.02 + 0.95 * done) * (context.stage_end - context.stage_begin);
-    part_context.stage_end = part_context.stage_begin + 0.95 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(component.mesh, asked, length, marked_in(component, built, options.marked_edges), options, clock, part_context));
+    part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
+    part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
+    parts.push_back(remesh_component(plans[i], area, options, clock, part_context));
     std::vector<int> input_vertex;
-    for (const int v : component.vertex) input_vertex.push_back(built.input_vertex[v]);
+    for (const int v : components[i].vertex) input_vertex.push_back(built.input_vertex[v]);
     append(result, parts.back(), input_vertex);
     singular_area += parts.back().singular_area;
     combinatorial_area += parts.back().combinatorial_area;
@@ -182,7 +183,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
   clock.measure("quality", [&] {
-    measure_quality(result, components, parts, built.mesh, context.in_stage("quality", 0.97, 1.0));
+    measure_quality(result, plans, parts, built.mesh, context.in_stage("quality", 0.97, 1.0));
   });
   report.stages = clock.records;
   return result;

@@ -36,6 +36,21 @@ struct PatchRecord {
   double combinatorial_area_fraction = 0;
 };
 
+/// Whatever had to be put right on the way: nothing of it makes the result invalid, but a stage before could be better
+/// where much of it happens.
+struct RepairRecord {
+  int broken_promises = 0;       ///< stages that gave up; the extraction then went on with less of them
+  int released_quads = 0;        ///< regular quads given to a patch next to them that could not be filled
+  int removed_quads = 0;         ///< at inner vertices of valence 1 and 2
+  int added_rings = 0;           ///< rings of quads and stars that undo double edges where nothing can be removed
+  int split_polychords = 0;      ///< strips doubled to make room
+  int opened_straight_quads = 0; ///< quads with three sides on one feature
+  int mended_places = 0;         ///< changes that only flawed quads called for
+  int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
+
+  RepairRecord& operator+=(const RepairRecord& other);
+};
+
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
@@ -45,6 +60,7 @@ struct RemeshReport {
   int dislocations_found = 0;
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
   PatchRecord patches;
+  RepairRecord repairs;
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;

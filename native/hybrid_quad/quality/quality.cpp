@@ -18,6 +18,11 @@ Vector3 quad_area_vector(const QuadMesh& mesh, int q) {
   return 0.5 * (mesh.positions[v[2]] - mesh.positions[v[0]]).cross(mesh.positions[v[3]] - mesh.positions[v[1]]);
 }
 
+std::array<Vector3, 4> corners_of(const QuadMesh& mesh, int q) {
+  const auto& v = mesh.quads[q];
+  return {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]};
+}
+
 /// A side of a quad, by its sorted ends.
 struct Side {
   int low, high, dart;
@@ -210,35 +215,46 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
   return quality;
 }
 
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size) {
   constexpr double kAgainst = -0.15, kReach = 0.2;
-  std::vector<int> inverted;
-  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q) {
-    const auto& v = mesh.quads[q];
-    Vector3 normal = quad_area_vector(mesh, q);
-    const double length = normal.norm();
-    if (!(length > 0)) continue;
-    normal /= length;
-    Vector3 centre = Vector3::Zero();
-    double size = 0;
-    for (int i = 0; i < 4; ++i) {
-      centre += 0.25 * mesh.positions[v[i]];
-      size += 0.25 * (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
-    }
-    const SurfacePoint near = surface.nearest(centre);
-    if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) continue;
-    if (size < least_size) {
-      inverted.push_back(q);
-      continue;
-    }
-    SurfaceIndex::Filter along;
-    along.normal = normal;
-    along.min_cosine = 0.05;
-    const SurfacePoint agreeing = surface.nearest(centre, along);
-    if (agreeing.face < 0 || std::sqrt(agreeing.squared_distance) > std::sqrt(near.squared_distance) + kReach * size)
-      inverted.push_back(q);
+  Vector3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
+  const double length = normal.norm();
+  if (!(length > 0)) return false;
+  normal /= length;
+  Vector3 centre = Vector3::Zero();
+  double size = 0;
+  for (int i = 0; i < 4; ++i) {
+    centre += 0.25 * corners[i];
+    size += 0.25 * (corners[(i + 1) % 4] - corners[i]).norm();
   }
+  const SurfacePoint near = surface.nearest(centre);
+  if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) return false;
+  if (size < least_size) return true;
+  SurfaceIndex::Filter along;
+  along.normal = normal;
+  along.min_cosine = 0.05;
+  const SurfacePoint agreeing = surface.nearest(centre, along);
+  return agreeing.face < 0 || std::sqrt(agreeing.squared_distance) > std::sqrt(near.squared_distance) + kReach * size;
+}
+
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
+  std::vector<int> inverted;
+  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
+    if (is_inverted(corners_of(mesh, q), surface, least_size)) inverted.push_back(q);
   return inverted;
+}
+
+std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
+  constexpr double kLeastArea = 1e-10;
+  double sum = 0;
+  for (const auto& v : mesh.quads)
+    for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
+  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
+  std::vector<int> flawed;
+  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
+    if (!(quad_area_vector(mesh, q).norm() > kLeastArea * mean * mean) || is_inverted(corners_of(mesh, q), surface, least_size))
+      flawed.push_back(q);
+  return flawed;
 }
 
 SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context, int samples) {

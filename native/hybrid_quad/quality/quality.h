@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "hybrid_quad/base/run_context.h"
@@ -23,10 +24,16 @@ struct ShapeQuality {
 
 ShapeQuality shape_quality(const QuadMesh& mesh);
 
-/// Quads that point against the surface: against its nearest point and against all of it within a fifth of the quad's
-/// mean edge length beyond that, so that the far side of a thin sheet does not count. Ascending.
+/// Whether a quad points against the surface: against its nearest point and against all of it within a fifth of the
+/// quad's mean edge length beyond that, so that the far side of a thin sheet does not count.
 /// \param least_size  quads with shorter edges (mean, scene units) have no such excuse
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size = 0);
+
+/// All quads that are. Ascending.
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0);
+
+/// Quads that are inverted, or without area (below 1e-10 of the squared mean edge length). Ascending.
+std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0);
 
 /// Distances in percent of the diagonal of the input's bounding box.
 struct SurfaceDistance {

@@ -100,9 +100,21 @@ std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const Featu
   });
   context.checkpoint(0.5);
   limit_lengths_of_thin_parts(index, length, options.least_ratio, target, context);
-  std::vector<int> none;
-  propagate(mesh, target, none, length, [&](double at, double edge) { return at + options.growth * edge; });
+  grade_lengths(mesh, length, target, options.growth);
   return target;
+}
+
+void limit_lengths(const SurfaceIndex& index, const std::vector<LengthLimit>& limits, std::vector<double>& length) {
+  for (const LengthLimit& place : limits) {
+    const SurfacePoint nearest = index.nearest(place.position);
+    if (nearest.face < 0) continue;
+    for (const int v : index.mesh().face(nearest.face)) length[v] = std::min(length[v], place.length);
+  }
+}
+
+void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth) {
+  std::vector<int> none;
+  propagate(mesh, length, none, longest, [&](double at, double edge) { return at + growth * edge; });
 }
 
 double quads_for_lengths(const TriangleMesh& mesh, const std::vector<double>& length) {

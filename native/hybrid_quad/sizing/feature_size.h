@@ -5,6 +5,12 @@
 
 namespace hybrid_quad {
 
+/// A place where quads must be short, whatever is asked.
+struct LengthLimit {
+  Vector3 position;
+  double length;  ///< scene units
+};
+
 struct FeatureSizeOptions {
   double least_ratio = 0.35;   ///< shortest length over the asked one
   double growth = 0.5;         ///< how much the length may grow over a unit of distance
@@ -18,6 +24,12 @@ struct FeatureSizeOptions {
 /// \returns #V of the mesh
 std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
                                           const FeatureSizeOptions& options, const RunContext& context);
+
+/// Shortens lengths (#V) that are longer than they may be somewhere near; grade_lengths spreads that.
+void limit_lengths(const SurfaceIndex& index, const std::vector<LengthLimit>& limits, std::vector<double>& length);
+
+/// Lets lengths (#V) of up to `longest` grow no faster than that with the distance.
+void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth = FeatureSizeOptions{}.growth);
 
 /// Number of quads that fit: integral of 1 / h^2 (h is linear in each face; one point a face).
 double quads_for_lengths(const TriangleMesh& mesh, const std::vector<double>& length);

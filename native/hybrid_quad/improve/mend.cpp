@@ -1,0 +1,131 @@
+#include "hybrid_quad/improve/mend.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "hybrid_quad/improve/sequence_search.h"
+#include "hybrid_quad/improve/trial.h"
+#include "hybrid_quad/quality/quality.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+class Mender {
+ public:
+  Mender(Workpiece& piece, Smoother& smoother, double least_size)
+      : piece_(piece), smoother_(smoother), least_size_(least_size), search_(piece.mesh, kEffort) {}
+
+  bool is_flawed(int q) const {
+    constexpr double kLeastArea = 1e-9;
+    const std::array<Vector3, 4> p = corners(q);
+    const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
+    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, piece_.index, least_size_);
+  }
+
+  /// \returns whether fewer quads around q are flawed now
+  bool mend(int q) {
+    for (const int rings : {0, 1, 2})
+      if (move_vertices(q, rings)) return true;
+    return change_neighbours(q, kLikely) || change_neighbours(q, kFar);
+  }
+
+  bool exhausted() const { return search_.exhausted(); }
+
+ private:
+  static constexpr int kEffort = 100;
+  static constexpr SearchLimits kLikely{1, 30, -30, 400, 1, 40}, kFar{2, 30, -30, 4000, 12, 120};
+
+  std::array<Vector3, 4> corners(int q) const {
+    const auto& v = piece_.mesh.quad(q);
+    const auto& p = piece_.mesh.positions;
+    return {p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
+  }
+
+  /// Counts the flawed ones; what is only badly shaped makes a difference below one.
+  Trial::Measure measure() const {
+    return [this](const std::vector<int>& quads) {
+      constexpr double kFair = 0.2;
+      double flawed = 0, bad = 0;
+      for (const int q : quads) {
+        flawed += is_flawed(q);
+        const std::array<Vector3, 4> p = corners(q);
+        bad += std::max(0.0, kFair - scaled_jacobian(p[0], p[1], p[2], p[3]));
+      }
+      return -flawed - 0.4 * bad / (1 + bad);
+    };
+  }
+
+  bool keep(Trial& trial) {
+    constexpr double kFewer = 0.5;
+    search_.count_trial();
+    return trial.keep(std::numeric_limits<double>::infinity(), kFewer);
+  }
+
+  /// Spreads the vertices of q and of some rings around it evenly over whatever part of the surface is nearest.
+  bool move_vertices(int q, int rings) {
+    constexpr int kSweeps = 10;
+    std::vector<int> inside(piece_.mesh.quad(q).begin(), piece_.mesh.quad(q).end());
+    for (int ring = 0; ring < rings; ++ring) {
+      const std::vector<int> core = inside;
+      for (const int v : core)
+        for (const int other : piece_.mesh.quads_at(v))
+          inside.insert(inside.end(), piece_.mesh.quad(other).begin(), piece_.mesh.quad(other).end());
+      std::sort(inside.begin(), inside.end());
+      inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+    }
+    Trial trial(piece_, smoother_, inside, measure());
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+      for (const int v : inside)
+        if (piece_.mesh.is_free(v) && !piece_.mesh.is_pinned(v)) {
+          piece_.mesh.positions[v] = mean_of_neighbours(v);
+          piece_.bind_free(v, Vector3::Zero());
+        }
+    return keep(trial);
+  }
+
+  Vector3 mean_of_neighbours(int v) const {
+    Vector3 sum = Vector3::Zero();
+    for (const int q : piece_.mesh.quads_at(v)) {
+      const int i = piece_.mesh.corner_of(q, v);
+      sum += piece_.mesh.positions[piece_.mesh.quad(q)[(i + 1) & 3]] + piece_.mesh.positions[piece_.mesh.quad(q)[(i + 3) & 3]];
+    }
+    return sum / (2.0 * piece_.mesh.valence(v));
+  }
+
+  bool change_neighbours(int q, const SearchLimits& limits) {
+    const EditMesh::Quad seeds = piece_.mesh.quad(q);
+    const std::vector<Sequence> sequences = search_.run({seeds.begin(), seeds.end()}, limits);
+    for (const Sequence& sequence : sequences) {
+      Trial trial(piece_, smoother_, touched_by(piece_, sequence), measure());
+      make_sequence(piece_, sequence);
+      if (keep(trial)) return true;
+    }
+    return false;
+  }
+
+  Workpiece& piece_;
+  Smoother& smoother_;
+  double least_size_;
+  SequenceSearch search_;
+};
+
+}  // namespace
+
+int mend_flawed(Workpiece& piece, Smoother& smoother, double least_size, const RunContext& context) {
+  constexpr int kRounds = 3;
+  Mender mender(piece, smoother, least_size);
+  int changes = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    int mended = 0;
+    for (int q = 0; q < piece.mesh.quad_count() && !mender.exhausted(); ++q) {
+      if ((q & 255) == 0) context.checkpoint();
+      if (piece.mesh.alive(q) && mender.is_flawed(q)) mended += mender.mend(q);
+    }
+    changes += mended;
+    if (mended == 0) break;
+  }
+  return changes;
+}
+
+}  // namespace hybrid_quad

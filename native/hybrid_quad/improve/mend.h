@@ -1,0 +1,15 @@
+#pragma once
+
+#include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/workpiece.h"
+
+namespace hybrid_quad {
+
+/// The last resort for quads that are flawed (quality.h) when all else is done: other positions or other neighbours, whatever
+/// valences and shapes suffer, if only fewer quads around are flawed.
+/// \param least_size  as in flawed_quads
+/// \returns number of changes made
+int mend_flawed(Workpiece& piece, Smoother& smoother, double least_size, const RunContext& context);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,63 @@
+#include "hybrid_quad/improve/restoration.h"
+
+#include <algorithm>
+
+#include "hybrid_quad/quality/quality.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+Vector3 centre_of(const QuadMesh& mesh, int q) {
+  Vector3 sum = Vector3::Zero();
+  for (const int v : mesh.quads[q]) sum += mesh.positions[v];
+  return 0.25 * sum;
+}
+
+double reach_of(const QuadMesh& mesh, int q, const Vector3& centre) {
+  double reach = 0;
+  for (const int v : mesh.quads[q]) reach = std::max(reach, (mesh.positions[v] - centre).norm());
+  return reach;
+}
+
+}  // namespace
+
+Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double usual_size)
+    : extracted_(extracted), locked_(extracted.quads.size(), 0), flawed_(extracted.quads.size(), 0) {
+  for (const int q : flawed_quads(extracted, index, usual_size)) {
+    flawed_[q] = 1;
+    ++flawed_before_;
+  }
+  for (int q = 0; q < static_cast<int>(extracted.quads.size()); ++q) {
+    centre_.push_back(centre_of(extracted, q));
+    reach_.push_back(reach_of(extracted, q, centre_.back()));
+    mean_edge_ += reach_.back() * 1.4142135623730951 / static_cast<double>(extracted.quads.size());
+  }
+}
+
+int Restoration::locked_count() const { return static_cast<int>(std::count(locked_.begin(), locked_.end(), 1)); }
+
+bool Restoration::give_up_around(const QuadMesh& improved, const std::vector<int>& flawed) {
+  const double margin = 0.5 * mean_edge_ * rounds_;
+  ++rounds_;
+  bool any = false;
+  for (const int f : flawed) {
+    const Vector3 centre = centre_of(improved, f);
+    const double radius = reach_of(improved, f, centre) + margin;
+    std::vector<int> near;
+    bool hopeless = false;
+    for (int q = 0; q < static_cast<int>(centre_.size()); ++q) {
+      if ((centre_[q] - centre).norm() > radius + reach_[q]) continue;
+      near.push_back(q);
+      hopeless |= flawed_[q] != 0;
+    }
+    if (hopeless) continue;
+    for (const int q : near) {
+      any |= !locked_[q];
+      locked_[q] = 1;
+    }
+  }
+  return any;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/mesh/surface_index.h"
+
+namespace hybrid_quad {
+
+/// Which extracted quads are better left alone: those around places that improving made flawed, though they were not
+/// before. What is extracted lies on the surface without folds nearly everywhere; features that crowd within a quad can
+/// leave no room to make it better.
+class Restoration {
+ public:
+  Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double usual_size);
+
+  int flawed_before() const { return flawed_before_; }
+  const std::vector<char>& locked() const { return locked_; }  ///< #Q of the extracted mesh
+  int locked_count() const;
+  /// Locks extracted quads near flawed ones of the improved mesh, further around where that was tried before.
+  /// \returns whether any quad was locked that was not yet
+  bool give_up_around(const QuadMesh& improved, const std::vector<int>& flawed);
+
+ private:
+  const QuadMesh& extracted_;
+  std::vector<Vector3> centre_;
+  std::vector<double> reach_;        // how far a quad extends from its centre
+  std::vector<char> locked_, flawed_;
+  int flawed_before_ = 0;
+  double mean_edge_ = 0;
+  int rounds_ = 0;
+};
+
+}  // namespace hybrid_quad

@@ -1,0 +1,97 @@
+#include "hybrid_quad/pipeline/size_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/mesh/edge_bisection.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kMostStretch = 1.4;
+
+int boundary_loops(const TriangleMesh& mesh) {
+  std::vector<char> seen(mesh.vertex_count(), 0);
+  int loops = 0;
+  for (int start = 0; start < mesh.vertex_count(); ++start) {
+    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
+    ++loops;
+    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
+  }
+  return loops;
+}
+
+/// A component needs some quads to be a mesh at all, however small it is, and more for every handle and hole.
+double least_quads(const TriangleMesh& mesh) {
+  constexpr double kSphere = 24, kHandle = 32, kHole = 8;
+  const int loops = boundary_loops(mesh);
+  const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
+  return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
+}
+
+/// Target lengths where everything that nothing limits is `factor` times as long.
+std::vector<double> stretched(const ComponentPlan& plan, double factor) {
+  std::vector<double> longer = plan.target;
+  for (double& t : longer)
+    if (t >= plan.length) t = factor * plan.length;
+  grade_lengths(plan.mesh, factor * plan.length, longer);
+  return longer;
+}
+
+}  // namespace
+
+ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
+                             const RemeshOptions& options, const RunContext& context) {
+  // Lengths and thickness are known at vertices: these must not be too far apart.
+  constexpr double kLongestEdge = 0.8, kLeastFeature = 3;
+  context.checkpoint();
+  ComponentPlan plan;
+  plan.length = std::min(length, std::sqrt(mesh.total_area() / least_quads(mesh)));
+  BisectedMesh fine = bisect_long_edges(mesh, kLongestEdge * plan.length, marked);
+  plan.mesh = std::move(fine.mesh);
+  FeatureOptions features;
+  features.use_sharp_angle = options.use_sharp_angle;
+  features.sharp_angle = options.sharp_angle;
+  features.minimum_length = kLeastFeature * plan.length;
+  features.marked_edges = std::move(fine.marked_edges);
+  plan.features = detect_features(plan.mesh, features, context);
+  plan.target = feature_sized_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, FeatureSizeOptions{}, context);
+  plan.quads = quads_for_lengths(plan.mesh, plan.target);
+  return plan;
+}
+
+void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
+  constexpr double kPrecision = 1.005;
+  const auto total = [&](double factor) {
+    double sum = 0;
+    for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, factor));
+    return sum;
+  };
+  if (total(1) <= quads_asked * kPrecision) return;
+  double low = 1, high = kMostStretch;
+  if (total(high) < quads_asked)
+    while (high / low > kPrecision) {
+      const double middle = std::sqrt(low * high);
+      (total(middle) > quads_asked ? low : high) = middle;
+    }
+  for (ComponentPlan& plan : plans) {
+    plan.target = stretched(plan, high);
+    plan.quads = quads_for_lengths(plan.mesh, plan.target);
+  }
+}
+
+ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, const std::vector<LengthLimit>& limits) {
+  ComponentPlan finer = plan;
+  const double factor = 1 / std::sqrt(quads_factor);
+  for (double& t : finer.target) t *= factor;
+  if (!limits.empty()) {
+    const double longest = *std::max_element(finer.target.begin(), finer.target.end());
+    limit_lengths(SurfaceIndex(finer.mesh, {}), limits, finer.target);
+    grade_lengths(finer.mesh, longest, finer.target);
+  }
+  finer.quads = quads_for_lengths(finer.mesh, finer.target);
+  return finer;
+}
+
+}  // namespace hybrid_quad

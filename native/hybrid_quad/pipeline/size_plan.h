@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hybrid_quad/features/features.h"
+#include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/sizing/feature_size.h"
+
+namespace hybrid_quad {
+
+/// A connected component, its feature curves, and how long its quads' edges are to be.
+struct ComponentPlan {
+  TriangleMesh mesh;            ///< the component with long edges halved: the same surface, old vertices first
+  FeatureGraph features;
+  double length = 0;            ///< asked edge length where nothing limits it (scene units)
+  std::vector<double> target;   ///< #V: asked edge length
+  double quads = 0;             ///< that fit
+};
+
+/// \param length  edge length asked for; a component too small for it gets a shorter one
+/// \param marked  pairs of the component's vertices that are features
+ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
+                             const RemeshOptions& options, const RunContext& context);
+
+/// Small features and thin parts need shorter edges than was asked: lengthens the others, in all components alike and by
+/// no more than two fifths, until as many quads fit as were asked for.
+void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
+
+/// The plan with shorter edges: everywhere by a factor, and at some places.
+ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, const std::vector<LengthLimit>& limits);
+
+}  // namespace hybrid_quad

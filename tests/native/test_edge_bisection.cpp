@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "hybrid_quad/mesh/edge_bisection.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+double longest_edge(const TriangleMesh& mesh) {
+  double longest = 0;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) longest = std::max(longest, mesh.edge_length(h));
+  return longest;
+}
+
+TEST(EdgeBisection, BoundsEdgesAndKeepsTheSurface) {
+  for (const TriangleMesh& mesh : {test::icosphere(1), test::box(1, Vector3(5, 1, 0.1)), test::flat_grid(2, 3, 4, 1), test::open_cylinder(7, 1, 1, 9)}) {
+    const BisectedMesh fine = bisect_long_edges(mesh, 0.3, {});
+    for (int h = 0; h < fine.mesh.halfedge_count(); ++h)
+      if (fine.mesh.opposite(h) >= 0) {
+        EXPECT_EQ(fine.mesh.opposite(fine.mesh.opposite(h)), h);
+        EXPECT_EQ(fine.mesh.from(h), fine.mesh.to(fine.mesh.opposite(h)));
+      }
+    EXPECT_LE(longest_edge(fine.mesh), 0.3);
+    EXPECT_NEAR(fine.mesh.total_area(), mesh.total_area(), 1e-12 * mesh.total_area());
+    EXPECT_EQ(fine.mesh.euler_characteristic(), mesh.euler_characteristic());
+    ASSERT_GE(fine.mesh.vertex_count(), mesh.vertex_count());
+    for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(fine.mesh.position(v), mesh.position(v));
+  }
+}
+
+TEST(EdgeBisection, LeavesShortEdgesAlone) {
+  const TriangleMesh mesh = test::icosphere(3);
+  const BisectedMesh same = bisect_long_edges(mesh, longest_edge(mesh), {});
+  EXPECT_EQ(same.mesh.face_count(), mesh.face_count());
+}
+
+TEST(EdgeBisection, HandsMarksOnToTheParts) {
+  const TriangleMesh mesh = test::box(1, Vector3(2, 2, 2));
+  const int h = 0;
+  const BisectedMesh fine = bisect_long_edges(mesh, 0.3, {{mesh.from(h), mesh.to(h)}});
+  double length = 0;
+  std::multiset<int> ends;
+  for (const auto& e : fine.marked_edges) {
+    length += (fine.mesh.position(e[0]) - fine.mesh.position(e[1])).norm();
+    ends.insert({e[0], e[1]});
+  }
+  EXPECT_NEAR(length, mesh.edge_length(h), 1e-12);
+  EXPECT_EQ(ends.count(mesh.from(h)), 1u);
+  EXPECT_EQ(ends.count(mesh.to(h)), 1u);
+  for (const int v : ends)
+    if (v != mesh.from(h) && v != mesh.to(h)) {
+      EXPECT_EQ(ends.count(v), 2u);
+    }
+}
+
+}  // namespace
+}  // namespace hybrid_quad

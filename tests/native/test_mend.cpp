@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include "hybrid_quad/improve/mend.h"
+#include "hybrid_quad/improve/restoration.h"
+#include "hybrid_quad/improve/valence_moves.h"
+#include "hybrid_quad/quality/quality.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+struct Sheet {
+  Sheet() : input(test::flat_grid(9, 9)), features(detect_features(input, FeatureOptions{}, RunContext{})), index(input, features.face_region) {
+    constexpr int kSide = 10;
+    for (int j = 0; j <= kSide; ++j)
+      for (int i = 0; i <= kSide; ++i) {
+        quads.positions.emplace_back(i / 10.0, j / 10.0, 0);
+        quads.kind.push_back(VertexKind::kFree);
+        quads.anchor.push_back(features.face_region[0]);
+      }
+    for (int j = 0; j < kSide; ++j)
+      for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+  }
+  static int id(int i, int j) { return 11 * j + i; }
+
+  TriangleMesh input;
+  FeatureGraph features;
+  SurfaceIndex index;
+  QuadMesh quads;
+};
+
+TEST(Mend, TurnsFoldedQuadsOver) {
+  Sheet sheet;
+  // One quad turned over with its surroundings dragged along.
+  std::swap(sheet.quads.positions[Sheet::id(4, 4)], sheet.quads.positions[Sheet::id(6, 4)]);
+  std::swap(sheet.quads.positions[Sheet::id(4, 6)], sheet.quads.positions[Sheet::id(6, 6)]);
+  const std::vector<int> before = flawed_quads(sheet.quads, sheet.index, 1.0);
+  ASSERT_FALSE(before.empty());
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
+  Smoother smoother(piece, SmootherOptions{});
+  EXPECT_GT(mend_flawed(piece, smoother, 1.0, RunContext{}), 0);
+  const QuadMesh after = piece.mesh.extract();
+  EXPECT_TRUE(violations_of(after).empty());
+  EXPECT_LT(flawed_quads(after, sheet.index, 1.0).size(), before.size());
+}
+
+TEST(Mend, LeavesGoodMeshesAlone) {
+  Sheet sheet;
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  Smoother smoother(piece, SmootherOptions{});
+  EXPECT_EQ(mend_flawed(piece, smoother, 1.0, RunContext{}), 0);
+  EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
+}
+
+TEST(Restoration, LocksAroundNewFlawsOnly) {
+  Sheet sheet;
+  Restoration restoration(sheet.quads, sheet.index, 1.0);
+  EXPECT_EQ(restoration.flawed_before(), 0);
+  QuadMesh worse = sheet.quads;
+  std::swap(worse.positions[Sheet::id(5, 5)], worse.positions[Sheet::id(7, 5)]);
+  const std::vector<int> flawed = flawed_quads(worse, sheet.index, 1.0);
+  ASSERT_FALSE(flawed.empty());
+  EXPECT_TRUE(restoration.give_up_around(worse, flawed));
+  EXPECT_GT(restoration.locked_count(), 0);
+  EXPECT_LT(restoration.locked_count(), 100);
+  EXPECT_TRUE(restoration.locked()[10 * 5 + 5]);
+  EXPECT_FALSE(restoration.locked()[0]);
+
+  // What was flawed from the start is no place to go back to.
+  Restoration hopeless(worse, sheet.index, 1.0);
+  EXPECT_EQ(hopeless.flawed_before(), static_cast<int>(flawed.size()));
+  EXPECT_FALSE(hopeless.give_up_around(worse, flawed));
+}
+
+TEST(EditMesh, LockedQuadsStayAsTheyAre) {
+  Sheet sheet;
+  // A turned edge makes four irregular vertices that the moves would remove.
+  auto& first = sheet.quads.quads[44];
+  auto& second = sheet.quads.quads[45];
+  const int a = first[0], b = first[1], c = first[2], d = first[3], x = second[1], y = second[2];
+  first = {a, b, x, y};
+  second = {a, y, c, d};
+  ASSERT_TRUE(violations_of(sheet.quads).empty());
+  for (const bool lock : {false, true}) {
+    Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+    if (lock) {
+      piece.mesh.lock(44);
+      piece.mesh.lock(45);
+    }
+    piece.bind_all();
+    Smoother smoother(piece, SmootherOptions{});
+    improve_valences(piece, smoother, RunContext{});
+    smoother.smooth(5, RunContext{});
+    const bool same = piece.mesh.alive(44) && piece.mesh.quad(44) == first && piece.mesh.alive(45) && piece.mesh.quad(45) == second;
+    EXPECT_EQ(same, lock);
+    for (const int v : {a, b, c, d, x, y})
+      if (lock) {
+        EXPECT_EQ(piece.mesh.positions[v], sheet.quads.positions[v]);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_quad
