@@ -18,7 +18,7 @@ TEST(SizePlan, StretchesFreePartsForWhatNeedsMore) {
   balance_plans(plans, asked);
   EXPECT_NEAR(plans[0].quads + plans[1].quads, asked, 0.02 * asked);
   for (const ComponentPlan& p : plans)
-    for (const double t : p.target) EXPECT_LE(t, 1.4 * p.length + 1e-12);
+    for (const double t : p.target) EXPECT_LE(t, 1.6 * p.length + 1e-12);
   // Rims keep what they need.
   const ComponentPlan alone = plan(test::box(10, Vector3(4, 4, 0.2)), 0.4);
   for (int v = 0; v < alone.mesh.vertex_count(); ++v) {

@@ -35,8 +35,8 @@ int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& co
 
 /// One round of everything; quads in `locked` stay as they are.
 ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, const TriangleMesh& input,
-                           const FeatureGraph& features, const SurfaceIndex& index, const ImproveOptions& options,
-                           const RunContext& context) {
+                           const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
+                           const ImproveOptions& options, const RunContext& context) {
   ImproveReport report;
   constexpr double kCurvatureWeight = 20;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
@@ -70,7 +70,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     report.connectivity_moves += moves;
     report.inverted_after = untangle(piece, smoother, context);
   }
-  report.mended = mend_flawed(piece, smoother, options.usual_size, context);
+  report.mended = mend_flawed(piece, smoother, whole, options.usual_size, context);
   quads = piece.mesh.extract();
   return report;
 }
@@ -78,16 +78,18 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
 }  // namespace
 
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
-                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context) {
+                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
+                            const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
   constexpr int kAttempts = 5;
-  Restoration restoration(quads, index, options.usual_size);
+  const SurfaceIndex& judged = whole ? *whole : index;
+  Restoration restoration(quads, judged, options.usual_size);
   QuadMesh best;
   ImproveReport report;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     QuadMesh improved = quads;
-    ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, options, context);
-    const std::vector<int> flawed = flawed_quads(improved, index, options.usual_size);
+    ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, judged, options, context);
+    const std::vector<int> flawed = flawed_quads(improved, judged, options.usual_size);
     now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();

@@ -13,7 +13,7 @@ struct ImproveOptions {
   double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (inverted_quads)
+  double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (flawed_quads)
 };
 
 struct ImproveReport {
@@ -28,7 +28,9 @@ struct ImproveReport {
 /// untangling (regularised corner energy) with vertices on the input surface, curve vertices on their curves and corners
 /// fixed. Never makes a valid mesh invalid (checked move by move), and gives up on places that come out flawed but were not
 /// before: these stay as they are.
+/// \param whole  the surface that `input` is part of, which flaws are judged by; null: `input` is all of it
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
-                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context);
+                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
+                            const SurfaceIndex* whole = nullptr);
 
 }  // namespace hybrid_quad

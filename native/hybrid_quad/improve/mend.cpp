@@ -13,14 +13,14 @@ namespace {
 
 class Mender {
  public:
-  Mender(Workpiece& piece, Smoother& smoother, double least_size)
-      : piece_(piece), smoother_(smoother), least_size_(least_size), search_(piece.mesh, kEffort) {}
+  Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double least_size)
+      : piece_(piece), smoother_(smoother), whole_(whole), least_size_(least_size), search_(piece.mesh, kEffort) {}
 
   bool is_flawed(int q) const {
     constexpr double kLeastArea = 1e-9;
     const std::array<Vector3, 4> p = corners(q);
     const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, piece_.index, least_size_);
+    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, least_size_);
   }
 
   /// \returns whether fewer quads around q are flawed now
@@ -106,15 +106,16 @@ class Mender {
 
   Workpiece& piece_;
   Smoother& smoother_;
+  const SurfaceIndex& whole_;
   double least_size_;
   SequenceSearch search_;
 };
 
 }  // namespace
 
-int mend_flawed(Workpiece& piece, Smoother& smoother, double least_size, const RunContext& context) {
+int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double least_size, const RunContext& context) {
   constexpr int kRounds = 3;
-  Mender mender(piece, smoother, least_size);
+  Mender mender(piece, smoother, whole, least_size);
   int changes = 0;
   for (int round = 0; round < kRounds; ++round) {
     int mended = 0;

@@ -12,15 +12,18 @@ namespace hybrid_quad {
 namespace {
 
 constexpr int kFewQuads = 8;        // so few are never made fewer: a closed surface would vanish
+constexpr int kLongestCascade = 3;
 constexpr int kLocalRounds = 10;    // then polychords only
 constexpr int kSparingRounds = 25;  // then everything near a defect
 constexpr int kMostRounds = 40;
 constexpr int kStripPerDefect =
     8;  // a polychord is worth splitting up to this length for each double edge it resolves
 
-/// Inner vertices of one or two quads, by collapses first, then, where features forbid them, by rings.
+/// Inner vertices of one or two quads, by collapses first, then, where features forbid them or one collapse calls for
+/// the next, by rings: along a tube with few quads around, collapses would go on to its other end.
 void fix_low_valences(QuadComplex& complex, ComplexRepairReport& report) {
   ComplexEditor editor(complex);
+  std::vector<int> after(complex.positions.size(), 0);  // how many collapses in a row led to the vertex
   const auto is_low = [&](int d) {
     const int v = complex.from(d);
     return editor.alive(d / 4) && !editor.on_border(v) && editor.corner_count(v) <= 2;
@@ -28,7 +31,10 @@ void fix_low_valences(QuadComplex& complex, ComplexRepairReport& report) {
   for (bool changed = true; changed && editor.alive_count() > kFewQuads;) {
     changed = false;
     for (int d = 0; d < static_cast<int>(complex.opposite.size()) && editor.alive_count() > kFewQuads; ++d) {
-      if (!is_low(d) || !editor.can_collapse(d ^ 2)) continue;
+      if (!is_low(d) || after[complex.from(d)] >= kLongestCascade || !editor.can_collapse(d ^ 2)) continue;
+      const int next = after[complex.from(d)] + 1;
+      for (int corner = d & ~3; corner <= (d | 3); ++corner)
+        after[complex.from(corner)] = std::max(after[complex.from(corner)], next);
       ++(editor.corner_count(complex.from(d)) == 1 ? report.cancelled_singlets : report.merged_doublets);
       editor.collapse(d ^ 2);
       changed = true;

@@ -26,6 +26,7 @@ struct Settings {
   double curl_weight = 1e-5;
 };
 constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
+constexpr double kFewMore = 1.1;  ///< no more quads than that for the sake of doubtful ones
 constexpr double kShorterWhereFlawed = 0.6;
 // Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
 // ones hardly any.
@@ -46,13 +47,14 @@ void require_sound(const std::string& stage, const Violations& violations) {
 
 class ComponentRemesher {
  public:
-  /// \param whole_area  of the surface that the component is part of
-  ComponentRemesher(const ComponentPlan& plan, double whole_area, const RemeshOptions& options, const Settings& settings,
+  /// \param whole  the surface that the component is part of
+  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options, const Settings& settings,
                     StageClock& clock, const RunContext& context)
       : plan_(plan),
         mesh_(plan.mesh),
-        doubtful_size_(kDoubtfulSize * std::sqrt(whole_area)),
-        least_size_(kLeastSize * std::sqrt(whole_area)),
+        whole_(whole),
+        doubtful_size_(kDoubtfulSize * std::sqrt(whole.mesh().total_area())),
+        least_size_(kLeastSize * std::sqrt(whole.mesh().total_area())),
         options_(options),
         settings_(settings),
         clock_(clock),
@@ -74,8 +76,8 @@ class ComponentRemesher {
     const SurfaceIndex index(mesh_, plan_.features.face_region);
     if (options_.improve) improve(index);
     require_sound("improve", violations_of(result_.mesh));
-    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, index, least_size_).size());
-    const std::vector<int> doubtful = flawed_quads(result_.mesh, index, doubtful_size_);
+    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
+    const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
     for (const int q : doubtful) result_.limits.push_back(shorter_at(index, q));
     return std::move(result_);
@@ -203,7 +205,7 @@ class ComponentRemesher {
       o.fit = options_.fit;
       o.target_length = length_;
       o.usual_size = doubtful_size_;
-      const ImproveReport report = improve_quads(result_.mesh, mesh_, plan_.features, index, o, context);
+      const ImproveReport report = improve_quads(result_.mesh, mesh_, plan_.features, index, o, context, &whole_);
       result_.repairs.mended_places += report.mended;
       result_.repairs.restored_quads += report.restored_quads;
     });
@@ -212,6 +214,7 @@ class ComponentRemesher {
 
   const ComponentPlan& plan_;
   const TriangleMesh& mesh_;
+  const SurfaceIndex& whole_;
   double doubtful_size_, least_size_;  // scene units
   const RemeshOptions& options_;
   const Settings& settings_;
@@ -234,7 +237,7 @@ double badness(const ComponentResult& result) {
 
 }  // namespace
 
-ComponentResult remesh_component(const ComponentPlan& plan, double whole_area, const RemeshOptions& options,
+ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context) {
   ComponentResult best;
   std::string broken;
@@ -242,11 +245,12 @@ ComponentResult remesh_component(const ComponentPlan& plan, double whole_area, c
   double begin = 0, end = 0.9;
   std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
+    if (any && settings.quads_factor > kFewMore && best.flawed_quads == 0) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
       const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, limits) : ComponentPlan{};
-      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole_area, options, settings, clock, pass).run();
+      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       if (!any || badness(result) < badness(best))

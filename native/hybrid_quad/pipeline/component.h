@@ -25,8 +25,8 @@ struct ComponentResult {
 };
 
 /// Remeshes one connected component (paper 3 and 4, then improvement).
-/// \param whole_area  of the surface that the component is part of (scene units)
-ComponentResult remesh_component(const ComponentPlan& plan, double whole_area, const RemeshOptions& options,
+/// \param whole  the surface that the component is part of
+ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options,
                                  StageClock& clock, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -101,17 +101,17 @@ void append(RemeshResult& result, const ComponentResult& component, const std::v
 }
 
 void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
-                     const std::vector<ComponentResult>& parts, const TriangleMesh& whole, const RunContext& context) {
+                     const std::vector<ComponentResult>& parts, const SurfaceIndex& whole, const RunContext& context) {
   RemeshReport& r = result.report;
   const ShapeQuality shape = shape_quality(result.mesh);
   r.scaled_jacobian_mean = shape.scaled_jacobian_mean;
   r.scaled_jacobian_p1 = shape.scaled_jacobian_p1;
   r.scaled_jacobian_min = shape.scaled_jacobian_min;
   r.irregular_vertices = shape.irregular_vertices;
-  const SurfaceDistance distance = surface_distance(result.mesh, SurfaceIndex(whole, {}), context);
+  const SurfaceDistance distance = surface_distance(result.mesh, whole, context);
   r.hausdorff_percent = distance.hausdorff();
   r.mean_distance_percent = distance.mean;
-  const double diagonal = whole.diagonal();
+  const double diagonal = whole.mesh().diagonal();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const double percent = feature_distance(parts[i].mesh, plans[i].mesh, plans[i].features, context);
     r.feature_hausdorff_percent = std::max(r.feature_hausdorff_percent, percent * plans[i].mesh.diagonal() / diagonal);
@@ -157,6 +157,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     if (!(options.edge_length > 0)) balance_plans(plans, options.quads);
   });
 
+  const SurfaceIndex whole(built.mesh, {});
   std::vector<ComponentResult> parts;
   double done = 0, singular_area = 0, combinatorial_area = 0;
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -164,7 +165,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], area, options, clock, part_context));
+    parts.push_back(remesh_component(plans[i], whole, options, clock, part_context));
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex) input_vertex.push_back(built.input_vertex[v]);
     append(result, parts.back(), input_vertex);
@@ -183,7 +184,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
   clock.measure("quality", [&] {
-    measure_quality(result, plans, parts, built.mesh, context.in_stage("quality", 0.97, 1.0));
+    measure_quality(result, plans, parts, whole, context.in_stage("quality", 0.97, 1.0));
   });
   report.stages = clock.records;
   return result;

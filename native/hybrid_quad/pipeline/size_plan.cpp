@@ -9,7 +9,7 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr double kMostStretch = 1.4;
+constexpr double kMostStretch = 1.6;
 
 int boundary_loops(const TriangleMesh& mesh) {
   std::vector<char> seen(mesh.vertex_count(), 0);
@@ -24,7 +24,7 @@ int boundary_loops(const TriangleMesh& mesh) {
 
 /// A component needs some quads to be a mesh at all, however small it is, and more for every handle and hole.
 double least_quads(const TriangleMesh& mesh) {
-  constexpr double kSphere = 24, kHandle = 32, kHole = 8;
+  constexpr double kSphere = 16, kHandle = 32, kHole = 8;
   const int loops = boundary_loops(mesh);
   const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
   return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;

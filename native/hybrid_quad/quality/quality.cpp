@@ -216,7 +216,7 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
 }
 
 bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size) {
-  constexpr double kAgainst = -0.15, kReach = 0.2;
+  constexpr double kAgainst = -0.15, kReach = 0.28;
   Vector3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
   const double length = normal.norm();
   if (!(length > 0)) return false;
@@ -229,12 +229,15 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   }
   const SurfacePoint near = surface.nearest(centre);
   if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) return false;
-  if (size < least_size) return true;
   SurfaceIndex::Filter along;
   along.normal = normal;
   along.min_cosine = 0.05;
   const SurfacePoint agreeing = surface.nearest(centre, along);
-  return agreeing.face < 0 || std::sqrt(agreeing.squared_distance) > std::sqrt(near.squared_distance) + kReach * size;
+  if (agreeing.face < 0) return true;
+  const auto& t = surface.mesh().face(agreeing.face);
+  const Vector3 centroid = (surface.mesh().position(t[0]) + surface.mesh().position(t[1]) + surface.mesh().position(t[2])) / 3;
+  const double away = size < least_size ? (centroid - centre).norm() : std::sqrt(agreeing.squared_distance);
+  return away > std::sqrt(near.squared_distance) + kReach * size;
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {

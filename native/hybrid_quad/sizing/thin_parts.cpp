@@ -68,10 +68,11 @@ Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
 
 void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, double least_ratio, std::vector<double>& target,
                                  const RunContext& context) {
-  constexpr double kProbesPerQuad = 4;
+  constexpr double kProbesPerQuad = 4, kLeastProbes = 1000;
   const TriangleMesh& mesh = index.mesh();
   const double quads = mesh.total_area() / (length * length);
-  const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / (kProbesPerQuad * quads)));
+  const double probes = std::max(kLeastProbes, kProbesPerQuad * quads);
+  const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / probes));
   const double enough = 2 * length / kPi;  // a circle of this radius has room for four quads
   const ThicknessProbe probe(index, 0.9 * length);
   for (int v = 0; v < mesh.vertex_count(); v += stride) {
