@@ -10,7 +10,10 @@ import numpy.typing as npt
 
 from .mesh_arrays import FloatArray, IntArray, Polygons
 
-_CHUNK = 4_000_000  # pairs looked at together: bounds the memory
+# What is looked at together: bounds the memory.
+_POINTS = 2000
+_PAIRS = 1_000_000
+_LEAF = 8  # triangles of the smallest boxes
 
 
 class SurfacePoints(NamedTuple):
@@ -41,33 +44,96 @@ def fan_triangles(polygons: Polygons) -> IntArray:
 def nearest_on_surface(points: FloatArray, vertices: FloatArray, triangles: IntArray) -> SurfacePoints:
     """For every point the nearest one of some triangles, of which there must be one.
 
-    Only those triangles are measured whose bounding sphere can hold the nearest point.
-
     Parameters
     ----------
     points : (k, 3) float64
     vertices : (n, 3) float64
     triangles : (t, 3) int
     """
-    corners = vertices[triangles]
-    centers = corners.mean(axis=1)
-    radii = np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+    tree = _BoxTree(vertices[triangles])
     positions = np.empty((len(points), 3))
     found = np.empty(len(points), np.int64)
-    step = max(1, _CHUNK // max(1, len(triangles)))
-    for begin in range(0, len(points), step):
-        chunk = points[begin : begin + step]
-        distance = _pair_distances(chunk, centers)
-        farthest = (distance + radii).min(axis=1)
-        slack = 1e-6 * (farthest + radii.max())  # of the rounding in the distances
-        which, candidate = np.nonzero(distance - radii <= (farthest + slack)[:, None])
-        nearest = _nearest_in_triangles(chunk[which], corners[candidate])
-        squared = ((nearest - chunk[which]) ** 2).sum(axis=1)
-        order = np.lexsort((candidate, squared, which))
-        first = order[np.searchsorted(which[order], np.arange(len(chunk)))]
-        positions[begin : begin + step] = nearest[first]
-        found[begin : begin + step] = candidate[first]
+    for begin in range(0, len(points), _POINTS):
+        part = slice(begin, begin + _POINTS)
+        positions[part], found[part] = tree.nearest(points[part])
     return SurfacePoints(positions, found)
+
+
+class _BoxTree:
+    """Boxes around triangles that lie together, around pairs of these, and so on up to one box around all.
+
+    Parameters
+    ----------
+    corners : (t, 3, 3) float64
+    """
+
+    def __init__(self, corners: FloatArray) -> None:
+        order = np.argsort(_place_on_curve(corners.mean(axis=1)), kind="stable")
+        leaves = 1 << max(0, int(np.ceil(np.log2(len(order) / _LEAF))))
+        # The last triangle again and again fills the last boxes.
+        self._triangles = np.concatenate([order, np.repeat(order[-1], leaves * _LEAF - len(order))])
+        self._corners = corners[self._triangles]
+        boxed = self._corners.reshape(leaves, 3 * _LEAF, 3)
+        low, high = boxed.min(axis=1), boxed.max(axis=1)
+        self._levels = [(low, high)]  # from the root down
+        while len(low) > 1:
+            low, high = low.reshape(-1, 2, 3).min(axis=1), high.reshape(-1, 2, 3).max(axis=1)
+            self._levels.insert(0, (low, high))
+
+    def nearest(self, points: FloatArray) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+        """Of each point the nearest place of a triangle, and which: level by level, all boxes that may hold it."""
+        which, box = np.arange(len(points)), np.zeros(len(points), np.int64)
+        bound = np.full(len(points), np.inf)
+        gap = np.zeros(len(points))
+        for level, (low, high) in enumerate(self._levels):
+            if level:
+                which, box = np.repeat(which, 2), (2 * box[:, None] + (0, 1)).ravel()
+            below, above = low[box] - points[which], points[which] - high[box]
+            gap = np.linalg.norm(np.maximum(np.maximum(below, above), 0), axis=1)
+            # No place in a box is farther than its farthest corner.
+            np.minimum.at(bound, which, np.linalg.norm(np.maximum(np.abs(below), np.abs(above)), axis=1))
+            near = gap <= bound[which]
+            which, box, gap = which[near], box[near], gap[near]
+        # The most promising box of each point first: it leaves few of the others.
+        order = np.lexsort((gap, which))
+        first = order[np.searchsorted(which[order], np.arange(len(points)))]
+        places, squared, triangles = self._nearest_in_boxes(points, which[first], box[first])
+        best = (np.sqrt(squared), places, triangles)
+        others = gap <= best[0][which]
+        others[first] = False
+        which, box = which[others], box[others]
+        for begin in range(0, len(which), _PAIRS // _LEAF):
+            part = slice(begin, begin + _PAIRS // _LEAF)
+            places, squared, triangles = self._nearest_in_boxes(points, which[part], box[part])
+            order = np.lexsort((squared, which[part]))
+            owners, chosen = np.unique(which[part][order], return_index=True)
+            chosen = order[chosen]
+            closer = np.sqrt(squared[chosen]) < best[0][owners]
+            for kept, new in zip(best, (np.sqrt(squared), places, triangles), strict=True):
+                kept[owners[closer]] = new[chosen[closer]]
+        return best[1], best[2]
+
+    def _nearest_in_boxes(
+        self, points: FloatArray, which: npt.NDArray[np.int64], box: npt.NDArray[np.int64]
+    ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.int64]]:
+        """For pairs of a point and a box: the nearest place, its squared distance, and its triangle."""
+        at = (_LEAF * box[:, None] + np.arange(_LEAF)).ravel()
+        own = np.repeat(points[which], _LEAF, axis=0)
+        places = _nearest_in_triangles(own, self._corners[at])
+        squared = ((places - own) ** 2).sum(axis=1).reshape(-1, _LEAF)
+        chosen = _LEAF * np.arange(len(box)) + squared.argmin(axis=1)
+        return places[chosen], squared.min(axis=1), self._triangles[at[chosen]]
+
+
+def _place_on_curve(points: FloatArray) -> npt.NDArray[np.int64]:
+    """(k,) Places on a curve through space along which neighbours lie together (Morton order)."""
+    extent = np.ptp(points, axis=0).max() or 1.0
+    cells = np.minimum((points - points.min(axis=0)) / extent * 2**20, 2**20 - 1).astype(np.int64)
+    place = np.zeros(len(points), np.int64)
+    for bit in range(20):
+        for axis in range(3):
+            place |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return place
 
 
 def pairs_within(
@@ -90,7 +156,7 @@ def pairs_within(
         first = np.searchsorted(keys, middle - 1, "left")
         count = np.searchsorted(keys, middle + 1, "right") - first
         ends = np.cumsum(count)
-        for begin, end in _parts(ends, _CHUNK):
+        for begin, end in _parts(ends, _PAIRS):
             part = count[begin:end]
             which = np.repeat(at[begin:end], part)
             within = np.arange(len(which)) - np.repeat(np.cumsum(part) - part, part)
@@ -113,15 +179,6 @@ def _parts(ends: npt.NDArray[np.int64], most: int) -> Iterator[tuple[int, int]]:
         end = max(begin + 1, int(np.searchsorted(ends, done + most, "right")))
         yield begin, end
         begin = end
-
-
-def _pair_distances(a: FloatArray, b: FloatArray) -> FloatArray:
-    """(k, l) distances of two lists of points, to about 1e-7 of their extent."""
-    middle = b.mean(axis=0)
-    a, b = a - middle, b - middle
-    squared = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * (a @ b.T)
-    distances: FloatArray = np.sqrt(np.maximum(squared, 0))
-    return distances
 
 
 def _nearest_in_triangles(p: FloatArray, corners: FloatArray) -> FloatArray:
