@@ -55,6 +55,18 @@ def test_painted_directions_of_faces_are_one_for_each_face():
     assert guides == pytest.approx(np.tile([0.0, 1.0, 0.0], (len(obj.data.polygons), 1)))
 
 
+def test_directions_of_faces_go_to_vertices_where_there_are_as_many():
+    bpy.ops.mesh.primitive_torus_add()
+    obj = bpy.context.object
+    assert len(obj.data.polygons) == len(obj.data.vertices)
+    painted = np.zeros((len(obj.data.polygons), 3))
+    painted[7] = (0, 0, 0.5)
+    _paint(obj, "hybrid_quad_guide", "FACE", painted)
+    guides = _task(obj).guides()
+    assert sorted(np.flatnonzero(guides.any(axis=1))) == sorted(obj.data.polygons[7].vertices)
+    assert guides[list(obj.data.polygons[7].vertices)] == pytest.approx(np.tile([0, 0, 0.5], (4, 1)))
+
+
 def test_attributes_come_through_modifiers():
     obj = add_grid(cells=3)
     _paint(obj, "hybrid_quad_guide", "POINT", np.tile([0.0, 1.0, 0.0], (len(obj.data.vertices), 1)))
@@ -228,6 +240,12 @@ def test_a_moved_objects_guides_lie_where_its_surface_is():
     obj.hybrid_quad.guide_object = line
     length = np.linalg.norm(_task(obj).guides(), axis=1)
     assert length[np.abs(points_of(obj)).max(axis=1) < 0.05].min() > 0.8
+
+
+def test_an_object_without_lines_guides_nothing():
+    obj = add_grid()
+    obj.hybrid_quad.guide_object = _add("Empty", None)
+    assert _task(obj).guides() is None
 
 
 def test_guide_edges_guide_and_are_not_kept():

@@ -34,6 +34,12 @@ def read_guides(mesh: bpy.types.Mesh, linear: FloatArray) -> FloatArray | None:
     return guides if guides.any() else None
 
 
+def are_of_faces(mesh: bpy.types.Mesh) -> bool:
+    """Whether the directions painted on a mesh are on its faces."""
+    attribute = mesh.attributes.get(GUIDE_ATTRIBUTE)
+    return attribute is not None and attribute.domain == "FACE"
+
+
 def read_density(mesh: bpy.types.Mesh) -> FloatArray | None:
     """(n,) float64 densities painted on a mesh's vertices, or None where there are none."""
     attribute = mesh.attributes.get(DENSITY_ATTRIBUTE)

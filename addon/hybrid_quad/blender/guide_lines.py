@@ -30,8 +30,10 @@ def lines_of_settings(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[Flo
 def lines_of_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[FloatArray]:
     """An object's lines as modifiers leave them: (k, 3) points each, in world space.
 
-    Of a curve that has a thickness it is the line in the middle, without modifiers.
+    Of a curve that has a thickness it is the line in the middle, without modifiers. Objects of other types have none.
     """
+    if obj.type not in LINE_TYPES:
+        return []
     evaluated = obj.evaluated_get(depsgraph)
     if obj.type in _PENCIL_TYPES:
         lines = list(_pencil_lines(evaluated.data, depsgraph.scene.frame_current))

@@ -34,6 +34,8 @@ class MeshSource:
         What each edge carries.
     guides : (n, 3) or (#F, 3) float64, or None
         Directions painted on vertices or faces, in the same space, as long as they are strong.
+    guides_of_faces : bool
+        Whether `guides` has one for each face.
     density : (n,) float64 or None
         Painted density: 2 for edges half as long.
     face_materials, face_smooth : (#F,)
@@ -48,6 +50,7 @@ class MeshSource:
     edges: IntArray
     edge_values: EdgeValues
     guides: FloatArray | None
+    guides_of_faces: bool
     density: FloatArray | None
     face_materials: IntArray
     face_smooth: npt.NDArray[np.bool_]
@@ -110,6 +113,7 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
         edges=edges,
         edge_values=edge_marks.read(mesh, polygons, edges, order),
         guides=guide_attributes.read_guides(mesh, linear),
+        guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
         face_materials=_read(mesh.polygons, "material_index", np.int32),
         face_smooth=_read(mesh.polygons, "use_smooth", np.bool_),

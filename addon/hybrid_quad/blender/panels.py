@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from .edge_marks import BORDERS, SHARP, SOURCES
+from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_remesh
 from .result_mesh import read_report
 
@@ -111,6 +112,8 @@ class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "use_density_attribute", text="Density")
         column = layout.column()
         column.prop(settings, "guide_object", text="Object")
+        if settings.guide_object and settings.guide_object.type not in LINE_TYPES:
+            column.label(text="This object has no lines", icon="ERROR")
         column.prop(settings, "guide_collection", text="Collection")
         strength = column.column()
         strength.active = bool(settings.guide_object or settings.guide_collection)

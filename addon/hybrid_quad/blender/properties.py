@@ -8,7 +8,6 @@ import bpy
 
 from ..core.options import MOST_QUADS, RemeshOptions
 from .edge_marks import SOURCES
-from .guide_lines import LINE_TYPES
 
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
@@ -131,11 +130,11 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     guide_marks_strength: bpy.props.FloatProperty(
         name="Edge Strength", description="How strongly quads follow guide edges", **STRENGTH
     )
+    # No poll, which would crash Blender 4.2 as it exits.
     guide_object: bpy.props.PointerProperty(
         type=bpy.types.Object,
         name="Guide Object",
         description="Curve, grease pencil or mesh edges on or near the surface, which quads follow",
-        poll=lambda _self, obj: obj.type in LINE_TYPES,
     )
     guide_collection: bpy.props.PointerProperty(
         type=bpy.types.Collection,

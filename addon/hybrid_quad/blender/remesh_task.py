@@ -66,9 +66,10 @@ class RemeshTask:
         """(n, 3) or (#F, 3) directions, painted and drawn; None where there are none. Takes its time."""
         source = self.source
         painted = source.guides if self.use_guides else None
-        of_faces = painted is not None and len(painted) != len(source.vertices)
-        if painted is not None and (self.strokes or len(source.polygons.sizes) == len(source.vertices)) and of_faces:
-            painted, of_faces = guides_of_vertices(painted, source.polygons, len(source.vertices)), False
+        vertex_count, face_count = len(source.vertices), len(source.polygons.sizes)
+        # One for each face is no good beside strokes, nor where it could be taken for one for each vertex.
+        if source.guides_of_faces and painted is not None and (self.strokes or vertex_count == face_count):
+            painted = guides_of_vertices(painted, source.polygons, vertex_count)
         if not self.strokes:
             return painted
         length = self.options.edge_length or math.sqrt(
