@@ -52,7 +52,7 @@ def make_cad_part(path: str) -> None:
     points = np.array([tuple(v.co) for v in mesh.vertices], float)
     edges = np.array([tuple(e.vertices) for e in mesh.edges], np.int32)
     polygons = as_polygons([tuple(p.vertices) for p in mesh.polygons])
-    marks = add_sharp_by_angle(np.zeros(len(edges), np.uint8), points, polygons, edges, MARK_ANGLE)
+    marks = add_sharp_by_angle(np.zeros(len(edges), np.uint16), points, polygons, edges, MARK_ANGLE)
     mesh.edges.foreach_set("use_edge_sharp", (marks & SHARP) != 0)
     _shade_smooth(mesh)
     obj.hybrid_quad.quads = 2000

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .core.check import Defect, check
     from .core.options import RemeshOptions
     from .core.remesh import RemeshResult, remesh
+    from .core.strokes import Stroke, guides_from_strokes
 
 bl_info = {
     "name": "Hybrid Quad",
@@ -34,7 +35,9 @@ __all__ = [
     "InternalError",
     "RemeshOptions",
     "RemeshResult",
+    "Stroke",
     "check",
+    "guides_from_strokes",
     "remesh",
 ]
 
@@ -46,6 +49,8 @@ _MODULE_OF = {
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "Stroke": "strokes",
+    "guides_from_strokes": "strokes",
 }
 
 

@@ -14,7 +14,7 @@ import bpy
 import pytest
 
 import hybrid_quad
-from hybrid_quad.blender import command
+from hybrid_quad.blender import command, edge_marks
 from scenes import add_cube, add_object, assert_sound
 
 BATCH = Path(hybrid_quad.__file__).parent / "batch.py"
@@ -100,11 +100,47 @@ def test_replace_and_the_objects_own_settings(blend, tmp_path):
     assert_sound(bpy.data.objects["Cube"])
 
 
+SETTINGS_OF_ARGUMENTS = {
+    **{source.argument: source.setting for source in edge_marks.SOURCES},
+    "guide-annotations": "use_guide_annotations",
+    "guide-attribute": "use_guide_attribute",
+    "density-attribute": "use_density_attribute",
+}
+
+
+@pytest.mark.parametrize("argument", sorted(SETTINGS_OF_ARGUMENTS))
+def test_every_switch_has_an_argument(argument):
+    obj, name = add_cube(), SETTINGS_OF_ARGUMENTS[argument]
+    for prefix, value in (("--", True), ("--no-", False)):
+        setattr(obj.hybrid_quad, name, not value)
+        command._apply_settings(obj, command._parser().parse_args(["--object", "Cube", "--output", "o.blend"]))
+        assert getattr(obj.hybrid_quad, name) is not value
+        words = ["--object", "Cube", "--output", "o.blend", prefix + argument]
+        command._apply_settings(obj, command._parser().parse_args(words))
+        assert getattr(obj.hybrid_quad, name) is value
+
+
+def test_guides_and_flow_from_arguments():
+    obj = add_cube()
+    line = bpy.data.objects.new("Line", bpy.data.curves.new("Line", "CURVE"))
+    bpy.data.collections.new("Lines")
+    words = (
+        "--object Cube --output o.blend --guide-object Line --guide-collection Lines --guide-radius 3 --adaptivity 0.5"
+    )
+    words += " --field-smoothness 0.25 --anisotropy 2"
+    command._apply_settings(obj, command._parser().parse_args(words.split()))
+    settings = obj.hybrid_quad
+    assert settings.guide_object == line and settings.guide_collection == bpy.data.collections["Lines"]
+    assert (settings.guide_radius, settings.adaptivity) == (3, 0.5)
+    assert (settings.field_smoothness, settings.anisotropy) == (0.25, 2)
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "status"),
     [
         (["--object", "Nothing"], 1, "input_error"),
         (["--object", "Nobody"], 2, "wrong_usage"),
+        (["--object", "Cube", "--guide-object", "Nobody"], 2, "wrong_usage"),
         (["--object", "Cube", "--time-limit", "0.000001"], 4, "time_limit"),
     ],
 )
@@ -128,6 +164,8 @@ def test_a_failure_writes_a_report_and_nothing_else(blend, tmp_path, arguments, 
         ["--object", "Cube", "--output", "out.blend", "--quads", "0"],
         ["--object", "Cube", "--output", "out.blend", "--quads", "many"],
         ["--object", "Cube", "--output", "out.blend", "--sharp-angle", "200"],
+        ["--object", "Cube", "--output", "out.blend", "--adaptivity", "2"],
+        ["--object", "Cube", "--output", "out.blend", "--anisotropy", "0.5"],
         ["--object", "Cube", "--output", "out.blend", "--quads", "5", "--edge-length", "1"],
     ],
 )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hybrid_quad.core import mesh_io
-from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, write_mesh
+from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, read_polylines, write_mesh
 from support import surfaces
 
 
@@ -182,3 +182,32 @@ def test_edge_file(tmp_path):
     assert read_edges(file_with(tmp_path, "none.txt", "")).shape == (0, 2)
     with pytest.raises(MeshFileError, match="line 2"):
         read_edges(file_with(tmp_path, "bad.txt", "0 1\n2 3 4\n"))
+
+
+def test_lines_are_read_from_obj_and_text(tmp_path):
+    obj, text = tmp_path / "lines.obj", tmp_path / "lines.txt"
+    obj.write_text("v 0 0 0\nv 1 0 0 # a comment\nv 1 1 0\nf 1 2 3\nl 1 2 3\nl -1 1\n")
+    text.write_text("# two lines\n0 0 0\n1 0 0\n1 1 0\n\n\n1 1 0\n0 0 0\n")
+    for path in (obj, text):
+        first, second = read_polylines(path)
+        assert first.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+        assert second.tolist() == [[1, 1, 0], [0, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        ("0 0 0\n1 0\n", "line 2"),
+        ("0 0 0\n1 0 nan\n", "line 2"),
+        ("v 0 0 0\nl 1 2\n", "line 2"),
+        ("v 0 0 0\nl 0 1\n", "line 2"),
+        ("v 0 0 0\nl 1 x\n", "line 2"),
+        ("0 0 0\n\n1 0 0\n", "no line"),
+        ("", "no line"),
+    ],
+)
+def test_files_without_lines_say_where(tmp_path, content, line):
+    path = tmp_path / "lines.txt"
+    path.write_text(content)
+    with pytest.raises(MeshFileError, match=line):
+        read_polylines(path)

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/features/features.h"
@@ -87,10 +88,74 @@ TEST(Features, MarkedEdgesStayHoweverShort) {
 
 TEST(Features, MinimumLengthDropsShortSetsOnly) {
   FeatureOptions options;
-  options.minimum_length = 11.9;
+  options.minimum_length = 6;
   EXPECT_EQ(detect(test::box(3), options).curves.size(), 12u);
   options.minimum_length = 12.1;
   EXPECT_TRUE(detect(test::box(3), options).curves.empty());
+}
+
+/// The mesh with every vertex moved by up to `size` of the mean edge length in each direction.
+TriangleMesh with_noise(const TriangleMesh& mesh, double size, unsigned seed) {
+  double mean = 0;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) mean += mesh.edge_length(h) / mesh.halfedge_count();
+  std::mt19937 random(seed);
+  std::vector<Vector3> p = mesh.positions();
+  for (Vector3& q : p)
+    for (int i = 0; i < 3; ++i) q[i] += size * mean * (2.0 * random() / 4294967295.0 - 1);
+  return TriangleMesh(std::move(p), mesh.faces());
+}
+
+double length_of(const FeatureGraph& g, const TriangleMesh& m) {
+  double sum = 0;
+  for (int h = 0; h < m.halfedge_count(); ++h)
+    if (g.is_feature(h) && !m.is_boundary(h)) sum += 0.5 * m.edge_length(h);
+  return sum;
+}
+
+TEST(Features, NoiseOfAScanIsNoFeature) {
+  for (const double size : {0.18, 0.2, 0.25}) {
+    const TriangleMesh m = with_noise(test::icosphere(5), size, 7);
+    FeatureOptions options;
+    const double all = length_of(detect(m, options), m);
+    EXPECT_GT(all, 1) << "the noise has no edges by angle, so this shows nothing";
+    for (const double quads : {500.0, 2000.0}) {
+      options.minimum_length = 3 * std::sqrt(m.total_area() / quads);
+      EXPECT_EQ(detect(m, options).curves.size(), 0u) << size << ' ' << quads;
+    }
+  }
+}
+
+TEST(Features, CreasesOutliveNoise) {
+  const TriangleMesh clean = test::box(30);
+  for (const double size : {0.05, 0.1, 0.15}) {
+    const TriangleMesh m = with_noise(clean, size, 3);
+    FeatureOptions options;
+    options.minimum_length = 3 * std::sqrt(m.total_area() / 600);
+    const FeatureGraph creases = detect(clean), found = detect(m, options);
+    double kept = 0, wrong = 0, all = 0;
+    for (int h = 0; h < m.halfedge_count(); ++h) {
+      all += creases.is_feature(h) * m.edge_length(h);
+      (creases.is_feature(h) ? kept : wrong) += found.is_feature(h) * m.edge_length(h);
+    }
+    EXPECT_GT(kept, 0.99 * all) << size;
+    EXPECT_LT(wrong, 0.01 * all) << size;
+  }
+}
+
+TEST(Features, ASmallClearLoopStaysWhereNoiseGoes) {
+  // A plate with a round step in it, fine enough that the step is two or three quads around.
+  const int n = 60;
+  const TriangleMesh flat = test::flat_grid(n, n, 6, 6);
+  std::vector<Vector3> p = flat.positions();
+  for (Vector3& q : p) {
+    const Vector3 from_middle(q.x() - 3, q.y() - 3, 0);
+    q.z() = from_middle.norm() < 0.7 ? 1.0 : 0.0;
+  }
+  const TriangleMesh step(std::move(p), flat.faces());
+  FeatureOptions options;
+  options.minimum_length = 3.0;
+  EXPECT_GT(length_of(detect(step, options), step), 2 * 3.0);
+  EXPECT_EQ(regions(detect(with_noise(step, 0.05, 5), options)), regions(detect(step, options)));
 }
 
 TEST(Features, WeakEdgesBridgeAGapBetweenStrongOnes) {

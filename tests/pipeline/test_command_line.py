@@ -196,3 +196,25 @@ def test_check(tmp_path, torus, moebius, capfd):
     assert main(["check", write_obj(tmp_path / "turned.obj", vertices, turned)]) == exit_codes.OK
     assert "repaired" in capfd.readouterr().out
     assert main(["check", str(tmp_path / "none.obj")]) == exit_codes.WRONG_USAGE
+
+
+LINE = "0 0 0\n1 0 0\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "more"),
+    [
+        (None, []),
+        ("1 2\n", []),
+        (LINE, ["--guide-radius", "0"]),
+        (LINE, ["--guide-strength", "2"]),
+    ],
+    ids=["no file", "no line", "radius", "strength"],
+)
+def test_guides_that_cannot_be_taken_are_wrong_usage(tmp_path, content, more):
+    lines, out = tmp_path / "lines.txt", tmp_path / "out.obj"
+    if content:
+        lines.write_text(content)
+    mesh = write_obj(tmp_path / "in.obj", *surfaces.torus())
+    assert main(["remesh", mesh, str(out), "--quiet", "--guides", str(lines), *more]) == exit_codes.WRONG_USAGE
+    assert not out.exists()

@@ -19,6 +19,7 @@ from ..core import report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
 from ..core.options import RemeshOptions
+from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import place_result
@@ -99,12 +100,34 @@ def _parser() -> argparse.ArgumentParser:
     sharp = parser.add_mutually_exclusive_group()
     sharp.add_argument("--sharp-angle", type=_angle, metavar="DEG", help="keep edges that bend by more than this")
     sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary and marked edges")
-    marked = parser.add_mutually_exclusive_group()
-    marked.add_argument(
-        "--marked-sharp", dest="marked_sharp", action="store_true", default=None, help="keep marked sharp edges"
+    for source in SOURCES:
+        parser.add_argument(
+            f"--{source.argument}",
+            dest=source.setting,
+            action=argparse.BooleanOptionalAction,
+            help=f"keep edges by {source.label.lower()}, or do not",
+        )
+    parser.add_argument("--guide-object", metavar="NAME", help="object whose lines quads follow")
+    parser.add_argument("--guide-collection", metavar="NAME", help="collection of objects whose lines quads follow")
+    parser.add_argument(
+        "--guide-annotations",
+        dest="use_guide_annotations",
+        action=argparse.BooleanOptionalAction,
+        help="let quads follow annotation strokes, or do not",
     )
-    marked.add_argument("--no-marked-sharp", dest="marked_sharp", action="store_false", help="do not")
-    parser.add_argument("--seams", action="store_true", default=None, help="keep UV seams")
+    for name in ("guide", "density"):
+        parser.add_argument(
+            f"--{name}-attribute",
+            dest=f"use_{name}_attribute",
+            action=argparse.BooleanOptionalAction,
+            help=f'use the attribute "hybrid_quad_{name}", or do not',
+        )
+    parser.add_argument("--guide-radius", type=_positive_number, metavar="N", help="how far guides act, in quads")
+    parser.add_argument("--adaptivity", type=_share, metavar="A", help="0: quads of one size; 1: by curvature")
+    parser.add_argument(
+        "--field-smoothness", type=_share, metavar="S", help="0: follow detail; 1: fewest singularities"
+    )
+    parser.add_argument("--anisotropy", type=_stretch, metavar="R", help="longest ratio of a quad's sides (1: squares)")
     place = parser.add_mutually_exclusive_group()
     place.add_argument(
         "--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object"
@@ -143,6 +166,20 @@ def _angle(text: str) -> float:
     return value
 
 
+def _share(text: str) -> float:
+    value = float(text)
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and 1")
+    return value
+
+
+def _stretch(text: str) -> float:
+    value = float(text)
+    if not 1 <= value <= 10:
+        raise argparse.ArgumentTypeError(f"{text} is not between 1 and 10")
+    return value
+
+
 def _find_object(name: str) -> bpy.types.Object:
     obj = bpy.context.view_layer.objects.get(name)
     if obj is None:
@@ -178,12 +215,33 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
         settings.use_sharp_angle, settings.sharp_angle = True, math.radians(options.sharp_angle)
     if options.no_sharp:
         settings.use_sharp_angle = False
-    if options.marked_sharp is not None:
-        settings.use_marked_sharp = options.marked_sharp
-    if options.seams is not None:
-        settings.use_seams = options.seams
+    for name in (*(source.setting for source in SOURCES), *_SAME_NAMES):
+        if getattr(options, name) is not None:
+            setattr(settings, name, getattr(options, name))
+    if options.guide_object is not None:
+        settings.guide_object = _named(bpy.data.objects, options.guide_object, "object")
+    if options.guide_collection is not None:
+        settings.guide_collection = _named(bpy.data.collections, options.guide_collection, "collection")
     if options.result_mode is not None:
         settings.result_mode = options.result_mode
+
+
+# Arguments that are settings of the same name.
+_SAME_NAMES = (
+    "use_guide_annotations",
+    "use_guide_attribute",
+    "use_density_attribute",
+    "guide_radius",
+    "adaptivity",
+    "field_smoothness",
+    "anisotropy",
+)
+
+
+def _named(found: Any, name: str, kind: str) -> Any:
+    if name not in found:
+        raise UsageError(f'no {kind} "{name}" in the file')
+    return found[name]
 
 
 def _prepare(obj: bpy.types.Object, options: argparse.Namespace) -> RemeshTask:

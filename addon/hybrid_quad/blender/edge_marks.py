@@ -1,90 +1,178 @@
-"""Marks on edges: which ones a mesh has, which of them are features, and how they get onto the result."""
+"""Marks and borders on edges: which ones a mesh has, which of them make features, and how they get onto the result.
+
+Blender keeps most marks in attributes whose names came with different versions; where there is no attribute yet, the
+edge itself has a property.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
 import numpy.typing as npt
 from mathutils.kdtree import KDTree
 
+from ..core.edge_borders import EdgeSides, edge_keys
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 
 SHARP = 1
 SEAM = 2
 FEATURE = 4
+CREASE = 8
+BEVEL = 16
+FREESTYLE = 32
+MATERIAL = 64
+FACE_SET = 128
+UV_ISLAND = 256
+BORDERS = MATERIAL | FACE_SET | UV_ISLAND
 
 FEATURE_ATTRIBUTE = "hybrid_quad_feature"
+FACE_SET_ATTRIBUTE = ".sculpt_face_set"  # from Blender 3.5 on; before, Python cannot see face sets
 
-MarkArray = npt.NDArray[np.uint8]
-
-
-def read(mesh: bpy.types.Mesh) -> MarkArray:
-    """Sum of `SHARP`, `SEAM` and `FEATURE` for every edge."""
-    marks = np.zeros(len(mesh.edges), np.uint8)
-    for mark, property_name in ((SHARP, "use_edge_sharp"), (SEAM, "use_seam")):
-        flags = np.empty(len(mesh.edges), np.bool_)
-        mesh.edges.foreach_get(property_name, flags)
-        marks[flags] |= mark
-    attribute = mesh.attributes.get(FEATURE_ATTRIBUTE)
-    if attribute is not None and attribute.domain == "EDGE" and attribute.data_type == "BOOLEAN":
-        flags = np.empty(len(mesh.edges), np.bool_)
-        attribute.data.foreach_get("value", flags)
-        marks[flags] |= FEATURE
-    return marks
+MarkArray = npt.NDArray[np.uint16]
 
 
-def write(mesh: bpy.types.Mesh, edges: IntArray, marks: MarkArray) -> None:
-    """Marks those edges of a mesh that are given as vertex pairs."""
+class EdgeSource(NamedTuple):
+    """Something that can make an edge a feature.
+
+    Attributes
+    ----------
+    mark : int
+    setting : str
+        The object's setting that asks for it.
+    identifier : str
+        In the setting that makes it a guide.
+    label : str
+        In the panel.
+    argument : str
+        Of the batch command, without the dashes.
+    """
+
+    mark: int
+    setting: str
+    identifier: str
+    label: str
+    argument: str
+
+
+SOURCES = (
+    EdgeSource(SHARP, "use_marked_sharp", "SHARP", "Sharp", "marked-sharp"),
+    EdgeSource(SEAM, "use_seams", "SEAM", "Seam", "seams"),
+    EdgeSource(CREASE, "use_creases", "CREASE", "Crease", "creases"),
+    EdgeSource(BEVEL, "use_bevel_weights", "BEVEL", "Bevel Weight", "bevel-weights"),
+    EdgeSource(FREESTYLE, "use_freestyle_marks", "FREESTYLE", "Freestyle", "freestyle-marks"),
+    EdgeSource(FEATURE, "use_feature_attribute", "FEATURE", "Attribute", "feature-attribute"),
+    EdgeSource(MATERIAL, "use_material_borders", "MATERIAL", "Materials", "material-borders"),
+    EdgeSource(FACE_SET, "use_face_set_borders", "FACE_SET", "Face Sets", "face-set-borders"),
+    EdgeSource(UV_ISLAND, "use_uv_borders", "UV_ISLAND", "UV Islands", "uv-borders"),
+)
+
+
+class _Store(NamedTuple):
+    """Where Blender keeps a mark: in an attribute or, where the edge has it, in a property."""
+
+    mark: int
+    property_name: str
+    attribute: str
+    data_type: str
+
+
+_STORES = (
+    _Store(SHARP, "use_edge_sharp", "", "BOOLEAN"),
+    _Store(SEAM, "use_seam", "", "BOOLEAN"),
+    _Store(CREASE, "crease", "crease_edge", "FLOAT"),  # a property before Blender 4.0
+    _Store(BEVEL, "bevel_weight", "bevel_weight_edge", "FLOAT"),  # a property before Blender 4.0
+    _Store(FREESTYLE, "use_freestyle_mark", "freestyle_edge", "BOOLEAN"),  # a property before Blender 5.0
+    _Store(FEATURE, "", FEATURE_ATTRIBUTE, "BOOLEAN"),
+)
+
+
+def marks_asked(settings: Any) -> int:
+    """Sum of the marks that an object's settings make features."""
+    return sum(source.mark for source in SOURCES if getattr(settings, source.setting))
+
+
+def marks_guiding(settings: Any) -> int:
+    """Sum of the marks that an object's settings make guides."""
+    return sum(source.mark for source in SOURCES if source.identifier in settings.guide_marks)
+
+
+class EdgeValues(NamedTuple):
+    """What the edges of a mesh carry.
+
+    Attributes
+    ----------
+    marks : (k,) uint16
+        Sum of the marks of each edge.
+    crease, bevel : (k,) float32
+        Weights, 0..1.
+    """
+
+    marks: MarkArray
+    crease: npt.NDArray[np.float32]
+    bevel: npt.NDArray[np.float32]
+
+
+def read(mesh: bpy.types.Mesh, polygons: Polygons, edges: IntArray, corner_order: Any) -> EdgeValues:
+    """All marks and borders of a mesh's edges.
+
+    Parameters
+    ----------
+    polygons, edges
+        The mesh's, as arrays.
+    corner_order : (C,) int
+        The mesh's loop at each corner of `polygons`.
+    """
+    marks = np.zeros(len(edges), np.uint16)
+    values = {store.mark: _read_store(mesh, store) for store in _STORES}
+    for mark, of_edge in values.items():
+        marks[of_edge > 0] |= mark
+    sides = EdgeSides(polygons, edges, len(mesh.vertices))
+    face_values = {MATERIAL: _read(mesh.polygons, "material_index", np.int32), FACE_SET: _read_face_sets(mesh)}
+    for mark, of_face in face_values.items():
+        if of_face is not None:
+            marks[sides.where_faces_differ(of_face)] |= mark
+    uv = _read_uv(mesh)
+    if uv is not None:
+        marks[sides.where_corners_differ(uv[corner_order])] |= UV_ISLAND
+    return EdgeValues(marks, values[CREASE].astype(np.float32), values[BEVEL].astype(np.float32))
+
+
+def write(mesh: bpy.types.Mesh, edges: IntArray, values: EdgeValues) -> None:
+    """Gives those edges of a mesh that are given as vertex pairs the marks and weights that Blender can keep."""
     if not len(edges):
         return
-    of_edge = np.zeros(len(mesh.edges), np.uint8)
-    of_edge[_indices_of(mesh, edges)] = marks
-    for mark, property_name in ((SHARP, "use_edge_sharp"), (SEAM, "use_seam")):
-        if (of_edge & mark).any():
-            mesh.edges.foreach_set(property_name, (of_edge & mark) != 0)
-    if (of_edge & FEATURE).any():
-        attribute = mesh.attributes.new(FEATURE_ATTRIBUTE, "BOOLEAN", "EDGE")
-        attribute.data.foreach_set("value", (of_edge & FEATURE) != 0)
+    place = _indices_of(mesh, edges)
+    weights = {CREASE: values.crease, BEVEL: values.bevel}
+    for store in _STORES:
+        has = (values.marks & store.mark) != 0
+        if has.any():
+            of_edge = np.zeros(len(mesh.edges), np.float32 if store.data_type == "FLOAT" else np.bool_)
+            of_edge[place] = np.where(has, weights.get(store.mark, 1), 0)
+            _write_store(mesh, store, of_edge)
 
 
 def add_sharp_by_angle(
     marks: MarkArray, vertices: FloatArray, polygons: Polygons, edges: IntArray, angle: float
 ) -> MarkArray:
     """`marks`, with `SHARP` added where the normals of an edge's two polygons differ by more than `angle` radians."""
-    normals = _polygon_normals(vertices, polygons)
-    following = np.arange(1, len(polygons.vertices) + 1)
-    ends = np.cumsum(polygons.sizes)
-    following[ends - 1] = ends - polygons.sizes
-    side_keys = _edge_keys(np.stack([polygons.vertices, polygons.vertices[following]], axis=1), len(vertices))
-    side_polygons = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)
-    order = np.argsort(side_keys, kind="stable")
-    side_keys, side_polygons = side_keys[order], side_polygons[order]
-    first = np.searchsorted(side_keys, _edge_keys(edges, len(vertices)), "left")
-    count = np.searchsorted(side_keys, _edge_keys(edges, len(vertices)), "right") - first
-    inner = np.flatnonzero(count == 2)
-    cosine = np.einsum("ij,ij->i", normals[side_polygons[first[inner]]], normals[side_polygons[first[inner] + 1]])
     result = marks.copy()
-    result[inner[cosine < np.cos(angle)]] |= SHARP
+    result[EdgeSides(polygons, edges, len(vertices)).where_faces_bend(vertices, angle)] |= SHARP
     return result
 
 
-def of_nearest(
-    points: FloatArray, vertices: FloatArray, edges: IntArray, marks: MarkArray, spacing: float
-) -> MarkArray:
-    """For every point, the marks of the nearest of some marked edges.
+def nearest_edges(points: FloatArray, vertices: FloatArray, edges: IntArray, spacing: float) -> npt.NDArray[np.int64]:
+    """For every point the nearest of some edges, of which there must be one.
 
     Parameters
     ----------
     points : (m, 3) float64
-    vertices, edges, marks
-        The edges' ends, and what each edge carries.
+    vertices, edges
+        The edges' ends.
     spacing : float
         Edges are compared by samples at most this far apart.
     """
-    if not len(edges) or not len(points):
-        return np.zeros(len(points), np.uint8)
     begin, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     count = np.maximum(1, np.ceil(np.linalg.norm(end - begin, axis=1) / spacing)).astype(np.int64)
     owner = np.repeat(np.arange(len(edges)), count)
@@ -95,30 +183,53 @@ def of_nearest(
     for index, sample in enumerate(samples):
         tree.insert(sample, index)
     tree.balance()
-    return marks[owner[[tree.find(point)[1] for point in points]]]
+    return owner[[tree.find(point)[1] for point in points]]
 
 
-def _polygon_normals(vertices: FloatArray, polygons: Polygons) -> FloatArray:
-    """Unit normals by Newell's rule; zero for a polygon without area."""
-    ends = np.cumsum(polygons.sizes)
-    following = np.arange(1, len(polygons.vertices) + 1)
-    following[ends - 1] = ends - polygons.sizes
-    corner = vertices[polygons.vertices]
-    first = np.repeat(corner[ends - polygons.sizes], polygons.sizes, axis=0)  # near origin: no cancellation far away
-    cross = np.cross(corner - first, corner[following] - first)
-    normals = np.add.reduceat(cross, ends - polygons.sizes, axis=0)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+def _read_store(mesh: bpy.types.Mesh, store: _Store) -> Any:
+    attribute = mesh.attributes.get(store.attribute) if store.attribute else None
+    dtype = np.float32 if store.data_type == "FLOAT" else np.bool_
+    if attribute is not None and (attribute.domain, attribute.data_type) == ("EDGE", store.data_type):
+        return _read(attribute.data, "value", dtype)
+    if store.property_name in bpy.types.MeshEdge.bl_rna.properties:
+        return _read(mesh.edges, store.property_name, dtype)
+    return np.zeros(len(mesh.edges), dtype)
 
 
-def _edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:
-    pairs = np.sort(edges.astype(np.int64), axis=1)
-    return pairs[:, 0] * vertex_count + pairs[:, 1]
+def _write_store(mesh: bpy.types.Mesh, store: _Store, values: Any) -> None:
+    if store.property_name in bpy.types.MeshEdge.bl_rna.properties:
+        mesh.edges.foreach_set(store.property_name, values)
+        return
+    attribute = mesh.attributes.get(store.attribute)
+    if attribute is None:
+        attribute = mesh.attributes.new(store.attribute, store.data_type, "EDGE")
+    attribute.data.foreach_set("value", values)
+
+
+def _read_face_sets(mesh: bpy.types.Mesh) -> Any:
+    attribute = mesh.attributes.get(FACE_SET_ATTRIBUTE)
+    if attribute is None or (attribute.domain, attribute.data_type) != ("FACE", "INT"):
+        return None
+    return _read(attribute.data, "value", np.int32)
+
+
+def _read_uv(mesh: bpy.types.Mesh) -> Any:
+    layer = mesh.uv_layers.active
+    if layer is None or not len(mesh.loops):
+        return None
+    if hasattr(layer, "uv"):  # from Blender 3.5 on
+        return _read(layer.uv, "vector", np.float32, 2).reshape(-1, 2)
+    return _read(layer.data, "uv", np.float32, 2).reshape(-1, 2)
+
+
+def _read(collection: Any, name: str, dtype: type, width: int = 1) -> Any:
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(name, values)
+    return values
 
 
 def _indices_of(mesh: bpy.types.Mesh, edges: IntArray) -> Any:
-    own = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", own)
-    keys = _edge_keys(own.reshape(-1, 2), len(mesh.vertices))
+    own = _read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2)
+    keys = edge_keys(own, len(mesh.vertices))
     order = np.argsort(keys)
-    return order[np.searchsorted(keys[order], _edge_keys(edges, len(mesh.vertices)))]
+    return order[np.searchsorted(keys[order], edge_keys(edges, len(mesh.vertices)))]

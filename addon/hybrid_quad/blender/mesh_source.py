@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from ..core.errors import InputError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
-from . import edge_marks
+from . import edge_marks, guide_attributes
+from .edge_marks import EdgeValues
 
 _FLATTEST = 1e-9  # ratio of the smallest to the largest scale below which no way back exists
 
@@ -29,8 +30,14 @@ class MeshSource:
     polygons : Polygons
         Wound as they look in the world: a mirrored object's polygons are reversed.
     edges : (k, 2) int32
-    marks : (k,) uint8
-        Which of `edge_marks` each edge carries.
+    edge_values : EdgeValues
+        What each edge carries.
+    guides : (n, 3) or (#F, 3) float64, or None
+        Directions painted on vertices or faces, in the same space, as long as they are strong.
+    guides_of_faces : bool
+        Whether `guides` has one for each face.
+    density : (n,) float64 or None
+        Painted density: 2 for edges half as long.
     face_materials, face_smooth : (#F,)
         Material slot and smooth shading of each polygon.
     materials : list
@@ -41,10 +48,18 @@ class MeshSource:
     vertices: FloatArray
     polygons: Polygons
     edges: IntArray
-    marks: npt.NDArray[np.uint8]
+    edge_values: EdgeValues
+    guides: FloatArray | None
+    guides_of_faces: bool
+    density: FloatArray | None
     face_materials: IntArray
     face_smooth: npt.NDArray[np.bool_]
     materials: list[Any]
+
+    @property
+    def marks(self) -> edge_marks.MarkArray:
+        """(k,) which of `edge_marks` each edge carries."""
+        return self.edge_values.marks
 
     @property
     def is_mirrored(self) -> bool:
@@ -89,12 +104,17 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
     sizes = _read(mesh.polygons, "loop_total", np.int32)
     corners = _read(mesh.loops, "vertex_index", np.int32)
     order = _corner_order(starts, sizes, is_reversed=bool(np.linalg.det(linear) < 0))
+    polygons = Polygons(sizes, np.ascontiguousarray(corners[order]))
+    edges = _read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2)
     return MeshSource(
         linear=linear,
         vertices=points.reshape(-1, 3) @ linear.T,
-        polygons=Polygons(sizes, np.ascontiguousarray(corners[order])),
-        edges=_read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2),
-        marks=edge_marks.read(mesh),
+        polygons=polygons,
+        edges=edges,
+        edge_values=edge_marks.read(mesh, polygons, edges, order),
+        guides=guide_attributes.read_guides(mesh, linear),
+        guides_of_faces=guide_attributes.are_of_faces(mesh),
+        density=guide_attributes.read_density(mesh),
         face_materials=_read(mesh.polygons, "material_index", np.int32),
         face_smooth=_read(mesh.polygons, "use_smooth", np.bool_),
         materials=[material.original if material else None for material in mesh.materials],

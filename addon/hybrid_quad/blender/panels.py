@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+from .edge_marks import BORDERS, SHARP, SOURCES
+from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_remesh
 from .result_mesh import read_report
 
@@ -70,10 +72,81 @@ class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
         angle = row.row()
         angle.active = settings.use_sharp_angle
         angle.prop(settings, "sharp_angle", text="")
-        column = layout.column(heading="Marked")
-        column.prop(settings, "use_marked_sharp", text="Sharp")
-        column.prop(settings, "use_seams", text="Seam")
-        column.prop(settings, "use_feature_attribute", text="Attribute")
+        layout.column(heading="Marked").prop(settings, "use_marked_sharp", text="Sharp")
+
+
+class VIEW3D_PT_hybrid_quad_feature_sources(_HybridQuadPanel, bpy.types.Panel):
+    """Other marks, and borders, that make edges stay."""
+
+    bl_label = "Features"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad_features"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        marks = layout.column(heading="Marked")
+        borders = layout.column(heading="Borders of")
+        for source in SOURCES:
+            if source.mark != SHARP:
+                column = borders if source.mark & BORDERS else marks
+                column.prop(settings, source.setting, text=source.label)
+
+
+class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
+    """What gives the quads their direction and density."""
+
+    bl_label = "Guides"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        column = layout.column(heading="Attributes")
+        column.prop(settings, "use_guide_attribute", text="Direction")
+        column.prop(settings, "use_density_attribute", text="Density")
+        column = layout.column()
+        column.prop(settings, "guide_object", text="Object")
+        if settings.guide_object and settings.guide_object.type not in LINE_TYPES:
+            column.label(text="This object has no lines", icon="ERROR")
+        column.prop(settings, "guide_collection", text="Collection")
+        strength = column.column()
+        strength.active = bool(settings.guide_object or settings.guide_collection)
+        strength.prop(settings, "guide_objects_strength", text="Strength")
+        column = layout.column()
+        column.prop(settings, "use_guide_annotations")
+        strength = column.column()
+        strength.active = settings.use_guide_annotations
+        strength.prop(settings, "guide_annotations_strength", text="Strength")
+        column = layout.column()
+        column.prop(settings, "guide_marks", text="Edges")
+        strength = column.column()
+        strength.active = bool(settings.guide_marks)
+        strength.prop(settings, "guide_marks_strength", text="Strength")
+        layout.prop(settings, "guide_radius")
+
+
+class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
+    """How quads adapt to the surface."""
+
+    bl_label = "Flow"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        column = layout.column()
+        column.prop(settings, "adaptivity")
+        column.prop(settings, "field_smoothness")
+        column.prop(settings, "anisotropy")
 
 
 class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
@@ -134,4 +207,11 @@ def _has_native_module() -> bool:
     return importlib.util.find_spec(f"{__package__.rpartition('.')[0]}._native") is not None
 
 
-CLASSES = (VIEW3D_PT_hybrid_quad, VIEW3D_PT_hybrid_quad_features, VIEW3D_PT_hybrid_quad_report)
+CLASSES = (
+    VIEW3D_PT_hybrid_quad,
+    VIEW3D_PT_hybrid_quad_features,
+    VIEW3D_PT_hybrid_quad_feature_sources,
+    VIEW3D_PT_hybrid_quad_guides,
+    VIEW3D_PT_hybrid_quad_flow,
+    VIEW3D_PT_hybrid_quad_report,
+)

@@ -7,6 +7,7 @@ import math
 import bpy
 
 from ..core.options import MOST_QUADS, RemeshOptions
+from .edge_marks import SOURCES
 
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
@@ -20,6 +21,13 @@ RESULT_MODES = (
         "Put the quads in this object. Visible modifiers are applied. Other users of the mesh keep the old one",
     ),
 )
+
+
+STRENGTH = {"default": 1.0, "min": 0.0, "max": 1.0, "subtype": "FACTOR"}
+NUMBERS = {
+    name: getattr(RemeshOptions, name, neutral)
+    for name, neutral in (("adaptivity", 0.0), ("field_smoothness", 1.0), ("anisotropy", 1.0))
+}
 
 
 class HybridQuadSettings(bpy.types.PropertyGroup):
@@ -75,6 +83,110 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         name="Feature Attribute",
         description='Keep edges whose attribute "hybrid_quad_feature" (Boolean, edge domain) is true',
         default=True,
+    )
+    use_creases: bpy.props.BoolProperty(
+        name="Creases",
+        description="Keep edges that have a crease for subdivision surfaces, and give the result's the same crease",
+        default=False,
+    )
+    use_bevel_weights: bpy.props.BoolProperty(
+        name="Bevel Weights",
+        description="Keep edges that have a bevel weight, and give the result's the same weight",
+        default=False,
+    )
+    use_freestyle_marks: bpy.props.BoolProperty(
+        name="Freestyle Marks",
+        description="Keep edges that are marked for Freestyle, and mark them on the result",
+        default=False,
+    )
+    use_material_borders: bpy.props.BoolProperty(
+        name="Material Borders", description="Keep edges between faces of different material slots", default=False
+    )
+    use_face_set_borders: bpy.props.BoolProperty(
+        name="Face Set Borders",
+        description="Keep edges between the face sets of Sculpt Mode (from Blender 3.5 on)",
+        default=False,
+    )
+    use_uv_borders: bpy.props.BoolProperty(
+        name="UV Island Borders",
+        description="Keep edges at which the active UV map is cut",
+        default=False,
+    )
+    use_guide_attribute: bpy.props.BoolProperty(
+        name="Guide Attribute",
+        description='Let quads follow the directions in the attribute "hybrid_quad_guide" (vector, points or faces)',
+        default=True,
+    )
+    guide_marks: bpy.props.EnumProperty(
+        name="Guide Edges",
+        description="Let quads follow these edges without keeping them. Edges that are kept need no guide",
+        items=tuple(
+            (source.identifier, source.label, f"Follow edges: {source.label.lower()}", 1 << index)
+            for index, source in enumerate(SOURCES)
+        ),
+        options={"ENUM_FLAG"},
+        default=set(),
+    )
+    guide_marks_strength: bpy.props.FloatProperty(
+        name="Edge Strength", description="How strongly quads follow guide edges", **STRENGTH
+    )
+    # No poll, which would crash Blender 4.2 as it exits.
+    guide_object: bpy.props.PointerProperty(
+        type=bpy.types.Object,
+        name="Guide Object",
+        description="Curve, grease pencil or mesh edges on or near the surface, which quads follow",
+    )
+    guide_collection: bpy.props.PointerProperty(
+        type=bpy.types.Collection,
+        name="Guide Collection",
+        description="Quads follow all curves and grease pencils of this collection",
+    )
+    guide_objects_strength: bpy.props.FloatProperty(
+        name="Object Strength", description="How strongly quads follow guide objects", **STRENGTH
+    )
+    use_guide_annotations: bpy.props.BoolProperty(
+        name="Annotations",
+        description="Let quads follow the scene's visible annotation strokes of this frame (draw them on the surface)",
+        default=False,
+    )
+    guide_annotations_strength: bpy.props.FloatProperty(
+        name="Annotation Strength", description="How strongly quads follow annotation strokes", **STRENGTH
+    )
+    guide_radius: bpy.props.FloatProperty(
+        name="Radius",
+        description="How far guide edges, objects and annotations act, counted in quads",
+        default=2.0,
+        min=0.1,
+        soft_max=10.0,
+    )
+    use_density_attribute: bpy.props.BoolProperty(
+        name="Density Attribute",
+        description='Make quads smaller where the attribute "hybrid_quad_density" (float, points) is more than 1',
+        default=True,
+    )
+    adaptivity: bpy.props.FloatProperty(
+        name="Adaptivity",
+        description="Smaller quads where the surface bends more; 0: all of one size",
+        default=NUMBERS["adaptivity"],
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    field_smoothness: bpy.props.FloatProperty(
+        name="Smoothness",
+        description="From following the surface's detail (0) to the fewest irregular vertices (1)",
+        default=NUMBERS["field_smoothness"],
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    anisotropy: bpy.props.FloatProperty(
+        name="Stretch",
+        description="Longest ratio of a quad's sides, along directions in which the surface bends less; 1: squares",
+        default=NUMBERS["anisotropy"],
+        min=1.0,
+        soft_max=4.0,
+        max=10.0,
     )
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"

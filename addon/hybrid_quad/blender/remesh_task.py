@@ -10,21 +10,30 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..core.edge_borders import edge_keys
 from ..core.errors import InternalError
-from ..core.mesh_arrays import IntArray
+from ..core.guide_values import guides_of_vertices
+from ..core.mesh_arrays import FloatArray, IntArray, surface_area
 from ..core.options import RemeshOptions
 from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.strokes import Stroke, guides_from_strokes, strokes_of_segments, stronger_of
 from ..core.validation import violations
-from . import edge_marks
+from . import edge_marks, guide_lines
 from .mesh_source import MeshSource, read_source
 
 if TYPE_CHECKING:
     from .properties import HybridQuadSettings
 
 
+# Settings that are passed on as they are.
+_NUMBERS = tuple(
+    name for name in ("adaptivity", "field_smoothness", "anisotropy") if name in RemeshOptions.__dataclass_fields__
+)
+
+
 @dataclass(frozen=True)
 class RemeshTask:
-    """A mesh, the features marked on it, and what is asked.
+    """A mesh, the features and guides on it, and what is asked.
 
     Attributes
     ----------
@@ -32,16 +41,42 @@ class RemeshTask:
     options : RemeshOptions
     feature_marks : int
         Those of `edge_marks` that make an edge a feature.
+    strokes : tuple of Stroke
+        Lines that quads follow, in the source's space.
+    stroke_radius : float
+        How far strokes act, in edge lengths of the quads.
+    use_guides, use_density : bool
+        Whether what is painted on the source counts.
     """
 
     source: MeshSource
     options: RemeshOptions
     feature_marks: int
+    strokes: tuple[Stroke, ...] = ()
+    stroke_radius: float = 2.0
+    use_guides: bool = True
+    use_density: bool = True
 
     @property
     def marked_edges(self) -> IntArray:
         """Vertex pairs of the edges that are features whatever their angle."""
         return self.source.edges[(self.source.marks & self.feature_marks) != 0]
+
+    def guides(self) -> FloatArray | None:
+        """(n, 3) or (#F, 3) directions, painted and drawn; None where there are none. Takes its time."""
+        source = self.source
+        painted = source.guides if self.use_guides else None
+        vertex_count, face_count = len(source.vertices), len(source.polygons.sizes)
+        # One for each face is no good beside strokes, nor where it could be taken for one for each vertex.
+        if source.guides_of_faces and painted is not None and (self.strokes or vertex_count == face_count):
+            painted = guides_of_vertices(painted, source.polygons, vertex_count)
+        if not self.strokes:
+            return painted
+        length = self.options.edge_length or math.sqrt(
+            surface_area(source.vertices, source.polygons) / self.options.quads
+        )
+        drawn = guides_from_strokes(source.vertices, source.polygons, self.strokes, self.stroke_radius * length)
+        return stronger_of(painted, drawn)
 
     def solve(
         self,
@@ -55,6 +90,7 @@ class RemeshTask:
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does.
         """
+        wishes = {"guides": self.guides(), "density": self.source.density if self.use_density else None}
         result = remesh_with_options(
             self.source.vertices,
             self.source.polygons,
@@ -62,6 +98,7 @@ class RemeshTask:
             sharp_edges=self.marked_edges,
             progress=progress,
             cancel=cancel,
+            **{name: wish for name, wish in wishes.items() if wish is not None},
         )
         problems = violations(result.vertices, result.quads)
         if problems:
@@ -92,30 +129,50 @@ def prepare_task(
         seed=seed,
         threads=threads,
         time_limit=time_limit,
+        **{name: getattr(settings, name) for name in _NUMBERS},
     )
-    marks = (
-        (edge_marks.SHARP if settings.use_marked_sharp else 0)
-        | (edge_marks.SEAM if settings.use_seams else 0)
-        | (edge_marks.FEATURE if settings.use_feature_attribute else 0)
+    source = read_source(obj, depsgraph)
+    return RemeshTask(
+        source,
+        options,
+        edge_marks.marks_asked(settings),
+        strokes=_strokes(obj, source, depsgraph),
+        stroke_radius=settings.guide_radius,
+        use_guides=settings.use_guide_attribute,
+        use_density=settings.use_density_attribute,
     )
-    return RemeshTask(read_source(obj, depsgraph), options, marks)
 
 
-def marks_of_result(task: RemeshTask, result: RemeshResult) -> tuple[IntArray, edge_marks.MarkArray]:
-    """Result edges inside the surface that follow a feature, and the marks of the feature they follow."""
+def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Depsgraph) -> tuple[Stroke, ...]:
+    """The lines that an object's settings name as guides, in the source's space."""
+    settings: HybridQuadSettings = obj.hybrid_quad
+    guiding, kept = edge_marks.marks_guiding(settings), edge_marks.marks_asked(settings)
+    soft = ((source.marks & guiding) != 0) & ((source.marks & kept) == 0)
+    strokes = strokes_of_segments(source.vertices[source.edges[soft]], settings.guide_marks_strength)
+    origin = np.array(obj.evaluated_get(depsgraph).matrix_world.translation, np.float64)
+    lines = guide_lines.lines_of_settings(settings, depsgraph)
+    strokes += [Stroke(line - origin, settings.guide_objects_strength) for line in lines]
+    if settings.use_guide_annotations:
+        lines = guide_lines.lines_of_annotations(depsgraph.scene)
+        strokes += [Stroke(line - origin, settings.guide_annotations_strength) for line in lines]
+    return tuple(stroke for stroke in strokes if stroke.strength > 0)
+
+
+def marks_of_result(task: RemeshTask, result: RemeshResult) -> tuple[IntArray, edge_marks.EdgeValues]:
+    """Result edges inside the surface that follow a feature, and what the feature that they follow carries."""
     edges = _inner_edges(result.feature_edges, result.quads, len(result.vertices))
     source = task.source
-    marks = source.marks & np.uint8(task.feature_marks)
+    marks = source.marks & np.uint16(task.feature_marks)
     if task.options.sharp_angle is not None:
         angle = math.radians(task.options.sharp_angle)
         marks = edge_marks.add_sharp_by_angle(marks, source.vertices, source.polygons, source.edges, angle)
-    if not len(edges):
-        return edges, np.zeros(0, np.uint8)
+    marked = np.flatnonzero(marks)
+    if not len(edges) or not len(marked):
+        return edges[:0], edge_marks.EdgeValues(marks[:0], source.edge_values.crease[:0], source.edge_values.bevel[:0])
     ends = result.vertices[edges]
     spacing = 0.25 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean())
-    marked = marks != 0
-    nearest = edge_marks.of_nearest(ends.mean(axis=1), source.vertices, source.edges[marked], marks[marked], spacing)
-    return edges, nearest
+    near = marked[edge_marks.nearest_edges(ends.mean(axis=1), source.vertices, source.edges[marked], spacing)]
+    return edges, edge_marks.EdgeValues(marks[near], source.edge_values.crease[near], source.edge_values.bevel[near])
 
 
 def _inner_edges(edges: IntArray, quads: IntArray, vertex_count: int) -> IntArray:
@@ -123,12 +180,7 @@ def _inner_edges(edges: IntArray, quads: IntArray, vertex_count: int) -> IntArra
     if not len(edges):
         return edges
     sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
-    keys, uses = np.unique(_keys(sides, vertex_count), return_counts=True)
-    wanted = _keys(edges, vertex_count)
+    keys, uses = np.unique(edge_keys(sides, vertex_count), return_counts=True)
+    wanted = edge_keys(edges, vertex_count)
     found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
     return edges[(keys[found] == wanted) & (uses[found] == 2)]
-
-
-def _keys(edges: IntArray, vertex_count: int) -> np.ndarray:
-    pairs = np.sort(edges.astype(np.int64), axis=1)
-    return pairs[:, 0] * vertex_count + pairs[:, 1]

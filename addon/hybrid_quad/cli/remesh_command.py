@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import math
 import signal
 import time
 from typing import Any
 
+import numpy as np
+
 from .. import __version__
 from ..core import mesh_io, report
 from ..core.errors import Cancelled, InputError, InternalError
+from ..core.mesh_arrays import FloatArray, Polygons, surface_area
 from ..core.options import SOLVERS, RemeshOptions
 from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.strokes import Stroke, guides_from_strokes
 from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, say
@@ -42,6 +47,15 @@ def add_to(commands: Any) -> None:
     )
     sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary, and what --features names")
     parser.add_argument("--features", metavar="FILE", help="edges to keep: two 0-based vertex indices of IN a line")
+    parser.add_argument(
+        "--guides",
+        metavar="FILE",
+        help="lines that quads follow: an .obj file with l elements, or x y z a line, an empty line between two lines",
+    )
+    parser.add_argument("--guide-radius", type=float, metavar="L", help="how far they act (default: two quads)")
+    parser.add_argument(
+        "--guide-strength", type=float, default=1.0, metavar="S", help="how strongly, 0 to 1 (default 1)"
+    )
     parser.add_argument(
         "--solver",
         choices=SOLVERS,
@@ -86,6 +100,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _options(arguments: argparse.Namespace) -> RemeshOptions:
+    if arguments.guide_radius is not None and not (
+        math.isfinite(arguments.guide_radius) and arguments.guide_radius > 0
+    ):
+        raise UsageProblem(f"--guide-radius must be > 0, not {arguments.guide_radius}")
+    if not 0 <= arguments.guide_strength <= 1:
+        raise UsageProblem(f"--guide-strength must be between 0 and 1, not {arguments.guide_strength}")
     try:
         return RemeshOptions(
             quads=RemeshOptions.quads if arguments.quads is None else arguments.quads,
@@ -105,6 +125,9 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
     sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
         raise Cancelled("the time limit passed while the mesh was read", "time_limit")
+    wishes: dict[str, Any] = (
+        {} if arguments.guides is None else {"guides": _guides(arguments, options, vertices, polygons)}
+    )
     with ProgressBar(arguments.quiet) as bar:
         result = remesh_with_options(
             vertices,
@@ -113,11 +136,24 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
             sharp_edges=sharp_edges,
             progress=bar.update,
             dump_stages=arguments.dump_stages,
+            **wishes,
         )
     problems = violations(result.vertices, result.quads)
     if problems:
         raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
     return result
+
+
+def _guides(
+    arguments: argparse.Namespace, options: RemeshOptions, vertices: FloatArray, polygons: Polygons
+) -> FloatArray:
+    """(n, 3) directions along the lines of a file."""
+    lines = mesh_io.read_polylines(arguments.guides)
+    length = options.edge_length or math.sqrt(surface_area(vertices, polygons) / options.quads)
+    radius = 2 * length if arguments.guide_radius is None else arguments.guide_radius
+    if not length > 0:  # no surface: the run itself says so
+        return np.zeros_like(vertices)
+    return guides_from_strokes(vertices, polygons, [Stroke(line, arguments.guide_strength) for line in lines], radius)
 
 
 def _write(arguments: argparse.Namespace, result: RemeshResult) -> None:

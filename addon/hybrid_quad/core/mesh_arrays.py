@@ -118,6 +118,13 @@ def surface_area(vertices: FloatArray, polygons: Polygons) -> float:
     return float(areas[sound].sum())
 
 
+def unit_vectors(vectors: FloatArray) -> FloatArray:
+    """(k, 3) vectors of length 1; zero where they are zero."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    units: FloatArray = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return units
+
+
 def _edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:
     ordered = np.sort(edges.astype(np.int64), axis=1)
     keys: npt.NDArray[np.int64] = ordered[:, 0] * vertex_count + ordered[:, 1]

@@ -143,6 +143,78 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
     return np.array(pairs, np.int64).reshape(-1, 2)  # type: ignore[return-value]
 
 
+def read_polylines(path: str | os.PathLike[str]) -> list[FloatArray]:
+    """Lines in space from a text file, (k, 3) float64 points each.
+
+    Either the lines (``l``) of an .obj file, or three coordinates a line with an empty line between two lines in space;
+    ``#`` starts a comment.
+
+    Raises
+    ------
+    MeshFileError
+        If there is no line in the file, or a row of it is neither; names the row.
+    """
+    path = Path(path)
+    text = _read_text(path)
+    rows = [(number, line.partition("#")[0].split()) for number, line in enumerate(text.splitlines(), 1)]
+    read = _polylines_of_obj if any(tokens[:1] == ["l"] for _, tokens in rows) else _polylines_of_text
+    try:
+        lines = read(rows)
+    except _BadRow as bad:
+        raise MeshFileError(f"{path}: line {bad.number} {bad}") from None
+    lines = [line for line in lines if len(line) > 1]
+    if not lines:
+        raise MeshFileError(f"{path}: has no line of two points or more")
+    return lines
+
+
+class _BadRow(Exception):
+    def __init__(self, number: int, message: str) -> None:
+        super().__init__(message)
+        self.number = number
+
+
+_Rows = list[tuple[int, list[str]]]
+
+
+def _polylines_of_obj(rows: _Rows) -> list[FloatArray]:
+    points: list[FloatArray] = []
+    lines = []
+    for number, tokens in rows:
+        if tokens[:1] == ["v"]:
+            points.append(_point_of(number, tokens[1:4]))
+        elif tokens[:1] == ["l"]:
+            try:
+                indices = [int(token.partition("/")[0]) for token in tokens[1:]]
+            except ValueError:
+                indices = [0]
+            places = [index - 1 if index > 0 else len(points) + index for index in indices]
+            if 0 in indices or not all(0 <= place < len(points) for place in places):
+                raise _BadRow(number, "names a vertex that is not there")
+            lines.append(np.array([points[place] for place in places]).reshape(-1, 3))
+    return lines
+
+
+def _polylines_of_text(rows: _Rows) -> list[FloatArray]:
+    lines: list[list[FloatArray]] = [[]]
+    for number, tokens in rows:
+        if tokens:
+            lines[-1].append(_point_of(number, tokens))
+        elif lines[-1]:
+            lines.append([])
+    return [np.array(line).reshape(-1, 3) for line in lines]
+
+
+def _point_of(number: int, tokens: list[str]) -> FloatArray:
+    try:
+        point = np.array([float(token) for token in tokens])
+    except ValueError:
+        point = np.zeros(0)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise _BadRow(number, f"is not three coordinates: {' '.join(tokens)!r}")
+    return point
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/features/crease_clarity.h"
 #include "hybrid_quad/features/features.h"
 
 namespace hybrid_quad {
@@ -14,20 +15,29 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kSliver = 1e-7;          ///< height over longest edge below which a face's normal is noise
 constexpr double kChainTurn = 45;         ///< degrees that a chain of weak edges may turn at a vertex
 constexpr double kChainShare = 0.5;       ///< longest chain of weak edges, as part of the strong set it continues
+constexpr double kSideShare = 1.0 / 6;    ///< how far the sides of a crease are looked at, of the minimum length
+constexpr double kNoClarity = 0.65, kFullClarity = 0.85;  ///< below, an edge says nothing for its set; above, its whole length
+constexpr double kNoiseFactor = 4;        ///< where all else is noise, a set must be this much longer again
+constexpr double kDoubt = 8;              ///< no set is trusted of which this part (1 / kDoubt) or more is unclear
+constexpr double kReachShare = 0.28;      ///< least reach of a set, of the minimum length: nearly that of a circle that long
 
 class FeatureDetector {
  public:
   FeatureDetector(const TriangleMesh& mesh, const FeatureOptions& options)
-      : mesh_(mesh), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0) {}
+      : mesh_(mesh), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
+        weight_(mesh.halfedge_count(), 1.0) {}
 
   void mark_given_edges();
   void mark_by_angle(const RunContext& context);
   void continue_chains(const RunContext& context);
-  void drop_loose_ends();
-  void drop_short_sets();
+  void weigh_edges(const RunContext& context);
+  void drop_noise();
   std::vector<char> result() const;
 
  private:
+  void drop_short_sets();
+  void drop_unclear_branches();
+  void drop_loose_ends();
   int opposite_or_self(int h) const { return mesh_.opposite(h) < 0 ? h : mesh_.opposite(h); }
   bool stands_for_edge(int h) const { return h <= opposite_or_self(h); }
   bool is_any(int h) const { return marked_[h] || by_angle_[h] || mesh_.is_boundary(h); }
@@ -41,17 +51,25 @@ class FeatureDetector {
   int feature_degree(int v) const;
   int straightest_weak_edge(int v, const Vector3& direction) const;
   void try_chain(int v, double longest);
-  std::vector<int> connected_sets(std::vector<double>& set_length) const;
+  double length(int h) const { return mesh_.edge_length(h); }
+  double evidence(int h) const { return by_angle_[h] && !marked_[h] ? weight_[h] * length(h) : length(h); }
+  template <class Measure>
+  std::vector<int> connected_sets(const Measure& measure, std::vector<double>& set_sum) const;
   struct Branch {
-    double length = 0;
+    double length = 0, evidence = 0;
     int tip = -1, root = -1;
     std::vector<int> edges;
   };
-  Branch branch_from(int tip) const;
+  Branch branch_from(int tip, int first = -1) const;
+  void drop(const Branch& branch) {
+    for (const int h : branch.edges) set(by_angle_, h, 0);
+  }
 
   const TriangleMesh& mesh_;
   const FeatureOptions& options_;
   std::vector<char> marked_, by_angle_;
+  std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
+  double noise_share_ = 0;      ///< of the length of all edges by angle
   std::vector<Vector3> normal_;
 };
 
@@ -174,7 +192,7 @@ void FeatureDetector::try_chain(int v, double longest) {
 void FeatureDetector::continue_chains(const RunContext& context) {
   if (!options_.use_sharp_angle || options_.sharp_angle > 180 || options_.weak_angle >= options_.sharp_angle) return;
   std::vector<double> set_length;
-  const std::vector<int> set_of = connected_sets(set_length);
+  const std::vector<int> set_of = connected_sets([this](int h) { return length(h); }, set_length);
   for (int v = 0; v < mesh_.vertex_count(); ++v) {
     if ((v & 0xffff) == 0) context.checkpoint(0.4);
     if (mesh_.outgoing(v) >= 0 && set_length[set_of[v]] > 0 && feature_degree(v) == 1)
@@ -182,8 +200,9 @@ void FeatureDetector::continue_chains(const RunContext& context) {
   }
 }
 
-/// A root for every vertex, the same along connected feature edges, and the length of edges of every root's set.
-std::vector<int> FeatureDetector::connected_sets(std::vector<double>& set_length) const {
+/// A root for every vertex, the same along connected feature edges, and the sum of a measure of the edges of every root's set.
+template <class Measure>
+std::vector<int> FeatureDetector::connected_sets(const Measure& measure, std::vector<double>& set_sum) const {
   std::vector<int> parent(mesh_.vertex_count());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int v) {
@@ -196,33 +215,97 @@ std::vector<int> FeatureDetector::connected_sets(std::vector<double>& set_length
       parent[std::max(a, b)] = std::min(a, b);
     }
   for (int v = 0; v < mesh_.vertex_count(); ++v) parent[v] = root(v);
-  set_length.assign(mesh_.vertex_count(), 0);
+  set_sum.assign(mesh_.vertex_count(), 0);
   for (int h = 0; h < mesh_.halfedge_count(); ++h)
-    if (is_any(h) && stands_for_edge(h)) set_length[parent[mesh_.from(h)]] += mesh_.edge_length(h);
+    if (is_any(h) && stands_for_edge(h)) set_sum[parent[mesh_.from(h)]] += measure(h);
   return parent;
 }
 
-void FeatureDetector::drop_short_sets() {
-  if (!(options_.minimum_length > 0)) return;
-  std::vector<double> set_length;
-  const std::vector<int> set_of = connected_sets(set_length);
-  for (int h = 0; h < mesh_.halfedge_count(); ++h)
-    if (by_angle_[h] && set_length[set_of[mesh_.from(h)]] < options_.minimum_length) by_angle_[h] = 0;
+/// On a sculpt or scan, edges bend by chance, or because triangles are as large as the radius of a ridge.
+void FeatureDetector::weigh_edges(const RunContext& context) {
+  const std::vector<char> barriers = result();
+  CreaseClarity clarity(mesh_, normal_, barriers, kSideShare * options_.minimum_length);
+  for (int h = 0; h < mesh_.halfedge_count(); ++h) {
+    if ((h & 0xfff) == 0) context.checkpoint(0.4 + 0.2 * h / mesh_.halfedge_count());
+    if (!by_angle_[h] || marked_[h] || !stands_for_edge(h)) continue;
+    const double weight = std::clamp((clarity(h) - kNoClarity) / (kFullClarity - kNoClarity), 0.0, 1.0);
+    weight_[h] = weight_[opposite_or_self(h)] = weight;
+  }
 }
 
-/// The chain of edges by angle from a loose end to the next junction, corner of marks, or other loose end.
-FeatureDetector::Branch FeatureDetector::branch_from(int tip) const {
+/// A set of edges by angle stays if it has enough clear length, and goes far enough to be no clump of noise.
+void FeatureDetector::drop_short_sets() {
+  std::vector<double> clear_length, set_length;
+  connected_sets([this](int h) { return length(h); }, set_length);
+  const std::vector<int> set_of = connected_sets([this](int h) { return evidence(h); }, clear_length);
+  // From any vertex of a set to the farthest, and from there to the farthest again.
+  std::vector<int> farthest = set_of;
+  std::vector<double> reach;
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    const std::vector<int> from = farthest;
+    reach.assign(mesh_.vertex_count(), 0);
+    for (int v = 0; v < mesh_.vertex_count(); ++v) {
+      const int s = set_of[v];
+      const double distance = (mesh_.position(v) - mesh_.position(from[s])).norm();
+      if (distance > reach[s]) {
+        reach[s] = distance;
+        farthest[s] = v;
+      }
+    }
+  }
+  std::vector<char> has_given(mesh_.vertex_count(), 0);
+  for (int h = 0; h < mesh_.halfedge_count(); ++h)
+    if (marked_[h] || mesh_.is_boundary(h)) has_given[set_of[mesh_.from(h)]] = 1;
+  const double least = options_.minimum_length;
+  for (int h = 0; h < mesh_.halfedge_count(); ++h) {
+    if (!by_angle_[h]) continue;
+    const int s = set_of[mesh_.from(h)];
+    const double doubt = std::clamp(kDoubt * (1 - clear_length[s] / set_length[s]), noise_share_ * noise_share_, 1.0);
+    const bool is_short = clear_length[s] < least * (1 + kNoiseFactor * noise_share_ * doubt);
+    const bool is_clump = !has_given[s] && reach[s] < kReachShare * least;
+    if (is_short || is_clump) by_angle_[h] = 0;
+  }
+}
+
+/// Drops what is too short; and, the more that was, the longer the others have to be, those that are not clear above all:
+/// where most edges above the angle are noise, chance also makes longer chains of them.
+void FeatureDetector::drop_noise() {
+  const auto sum_by_angle = [this](const auto& measure) {
+    double sum = 0;
+    for (int h = 0; h < mesh_.halfedge_count(); ++h)
+      if (by_angle_[h] && !marked_[h]) sum += measure(h);
+    return sum;
+  };
+  const auto length_of_edge = [this](int h) { return length(h); };
+  const double all = sum_by_angle(length_of_edge);
+  const double clear = sum_by_angle([this](int h) { return evidence(h); });
+  drop_short_sets();
+  const double kept = sum_by_angle(length_of_edge);
+  if (!(kept > 0)) return;
+  noise_share_ = 1 - std::min(clear, kept) / all;
+  drop_short_sets();
+  drop_unclear_branches();
+  drop_loose_ends();
+  drop_short_sets();
+}
+
+/// The chain of edges by angle from a vertex to the next junction, corner of marks, or loose end.
+/// \param first the half-edge it begins with; -1: any at `tip`
+FeatureDetector::Branch FeatureDetector::branch_from(int tip, int first) const {
   Branch branch;
   branch.tip = tip;
   int v = tip, came = -1;
   do {
-    int out = -1;
-    visit_edges_at(v, [&](int h) {
-      if (by_angle_[h] && !marked_[h] && h != came && opposite_or_self(h) != came) out = h;
-    });
+    int out = first;
+    first = -1;
+    if (out < 0)
+      visit_edges_at(v, [&](int h) {
+        if (by_angle_[h] && !marked_[h] && h != came && opposite_or_self(h) != came) out = h;
+      });
     if (out < 0) break;
     branch.edges.push_back(out);
-    branch.length += mesh_.edge_length(out);
+    branch.length += length(out);
+    branch.evidence += evidence(out);
     came = out;
     v = mesh_.from(out) == v ? mesh_.to(out) : mesh_.from(out);
   } while (feature_degree(v) == 2 && v != tip);
@@ -230,25 +313,40 @@ FeatureDetector::Branch FeatureDetector::branch_from(int tip) const {
   return branch;
 }
 
-/// Short twigs that end inside a region are noise of a sculpt or scan. The shortest at every junction goes first, so
+/// Short branches of a set that say next to nothing for it: chance edges between the lines of a crease, or of a clump.
+void FeatureDetector::drop_unclear_branches() {
+  constexpr double kUnclear = 0.2;
+  std::vector<Branch> unclear;
+  for (int v = 0; v < mesh_.vertex_count(); ++v) {
+    if (mesh_.outgoing(v) < 0 || feature_degree(v) < 3) continue;
+    visit_edges_at(v, [&](int h) {
+      if (!by_angle_[h] || marked_[h]) return;
+      Branch branch = branch_from(v, h);
+      if (branch.length < options_.minimum_length && branch.evidence < kUnclear * branch.length)
+        unclear.push_back(std::move(branch));
+    });
+  }
+  for (const Branch& branch : unclear) drop(branch);
+}
+
+/// Short twigs that end inside a region are noise of a sculpt or scan. The least clear at every junction goes first, so
 /// that a long crease keeps the better of two twigs at its end.
 void FeatureDetector::drop_loose_ends() {
-  if (!(options_.minimum_length > 0)) return;
   for (bool changed = true; changed;) {
     std::vector<Branch> twigs;
     for (int v = 0; v < mesh_.vertex_count(); ++v) {
       if (mesh_.outgoing(v) < 0 || feature_degree(v) != 1) continue;
       Branch branch = branch_from(v);
-      if (!branch.edges.empty() && branch.length < options_.minimum_length && feature_degree(branch.root) > 2)
+      if (!branch.edges.empty() && branch.evidence < options_.minimum_length && feature_degree(branch.root) > 2)
         twigs.push_back(std::move(branch));
     }
-    std::stable_sort(twigs.begin(), twigs.end(), [](const Branch& a, const Branch& b) { return a.length < b.length; });
+    std::stable_sort(twigs.begin(), twigs.end(), [](const Branch& a, const Branch& b) { return a.evidence < b.evidence; });
     std::vector<char> touched(twigs.empty() ? 0 : mesh_.vertex_count(), 0);
     changed = false;
     for (const Branch& twig : twigs) {
       if (touched[twig.root]) continue;
       touched[twig.root] = 1;
-      for (const int h : twig.edges) set(by_angle_, h, 0);
+      drop(twig);
       changed = true;
     }
   }
@@ -267,9 +365,10 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
   detector.mark_given_edges();
   detector.mark_by_angle(context);
   detector.continue_chains(context);
-  detector.drop_short_sets();
-  detector.drop_loose_ends();
-  detector.drop_short_sets();
+  if (options.minimum_length > 0) {
+    detector.weigh_edges(context);
+    detector.drop_noise();
+  }
   context.checkpoint(0.7);
   return trace_features(mesh, detector.result(), options.corner_angle);
 }

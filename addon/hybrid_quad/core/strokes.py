@@ -1,0 +1,177 @@
+"""Guides from strokes: lines drawn on or near a surface give the direction of the quads around them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .edge_borders import polygon_normals
+from .mesh_arrays import FacesLike, FloatArray, Polygons, as_polygons, as_vertices, unit_vectors
+from .surface_points import fan_triangles, nearest_on_surface, pairs_within
+
+_SAMPLES_PER_RADIUS = 4
+_MOST_SAMPLES = 4000
+# Cosine between normals below which a place is on another side of the surface than the stroke: a thin sheet's back.
+_SAME_SIDE = 0.3
+
+
+class Stroke(NamedTuple):
+    """A line that quads should follow, or run square to.
+
+    Attributes
+    ----------
+    points : (k, 3) float64
+        Its corners in order; a closed one repeats the first.
+    strength : float
+        0..1.
+    """
+
+    points: FloatArray
+    strength: float = 1.0
+
+
+def guides_from_strokes(
+    vertices: npt.ArrayLike,
+    faces: FacesLike,
+    strokes: Iterable[Stroke | npt.ArrayLike],
+    radius: float,
+) -> FloatArray:
+    """Directions for the vertices near some strokes, as :func:`~hybrid_quad.remesh` takes them as `guides`.
+
+    Every stroke is put onto the nearest surface. It acts on vertices within `radius` that lie on the same side of the
+    surface, the less the farther away, and on the corners of the triangles it passes however far. Where strokes meet,
+    they act as crosses: one direction and its normal say the same.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float
+    faces : (m, k) int, or a sequence of sequences of int
+    strokes : iterable of Stroke or (k, 3) float
+        Plain points count as a stroke of strength 1.
+    radius : float
+        In the units of `vertices`.
+
+    Returns
+    -------
+    (n, 3) float64
+        Tangents of the surface as long as the guide is strong; zero where none is.
+    """
+    if not (math.isfinite(radius) and radius > 0):
+        raise ValueError(f"radius must be > 0, not {radius!r}")
+    points, polygons = as_vertices(vertices), as_polygons(faces)
+    triangles = fan_triangles(polygons)
+    lines = [_as_stroke(stroke) for stroke in strokes]
+    segments = np.concatenate([np.stack([s.points[:-1], s.points[1:]], axis=1) for s in lines] or [np.zeros((0, 2, 3))])
+    strengths = np.concatenate([np.full(max(0, len(s.points) - 1), s.strength) for s in lines] or [np.zeros(0)])
+    normals = vertex_normals(points, polygons)
+    result = np.zeros((len(points), 3))
+    segments, strengths = _without_points(segments, strengths)
+    if not len(segments) or not len(triangles):
+        return result
+    places, tangents, owner = _samples(segments, radius / _SAMPLES_PER_RADIUS)
+    on_surface = nearest_on_surface(places, points, triangles)
+    corner = points[triangles[on_surface.triangles]]
+    normal = unit_vectors(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]))
+    tangents = unit_vectors(tangents - (tangents * normal).sum(axis=1)[:, None] * normal)
+    crosses = _Crosses(points, normals)
+    for sample, vertex, distance in pairs_within(on_surface.positions, points, radius):
+        crosses.add(vertex, sample, (1 - (distance / radius) ** 2) ** 2, strengths[owner], tangents, normal)
+    # The triangles passed, so that a stroke also acts on a mesh coarser than its radius.
+    passed = np.repeat(np.arange(len(places)), 3)
+    vertex = triangles[on_surface.triangles].ravel().astype(np.int64)
+    away = np.linalg.norm(points[vertex] - on_surface.positions[passed], axis=1)
+    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)[passed]
+    falloff = np.where(away < radius, 0, 0.5 * np.maximum(1 - away / np.maximum(longest, 1e-300), 0.1))
+    crosses.add(vertex, passed, falloff, strengths[owner], tangents, normal)
+    return crosses.directions()
+
+
+def strokes_of_segments(segments: FloatArray, strength: float) -> list[Stroke]:
+    """(s, 2, 3) segments as strokes of two points each."""
+    return [Stroke(segment, strength) for segment in segments]
+
+
+def vertex_normals(vertices: FloatArray, polygons: Polygons) -> FloatArray:
+    """(n, 3) Unit means of the normals of each vertex's polygons; zero where there are none."""
+    of_corner = np.repeat(polygon_normals(vertices, polygons), polygons.sizes, axis=0)
+    sums: FloatArray = np.stack(
+        [np.bincount(polygons.vertices, of_corner[:, i], len(vertices)) for i in range(3)], axis=1
+    )
+    return unit_vectors(sums)
+
+
+def stronger_of(first: FloatArray | None, second: FloatArray | None) -> FloatArray | None:
+    """Of two lists of guides, row by row the longer."""
+    if first is None or second is None:
+        return second if first is None else first
+    lengths = (first**2).sum(axis=1), (second**2).sum(axis=1)
+    return np.where((lengths[0] >= lengths[1])[:, None], first, second)
+
+
+class _Crosses:
+    """Weighted means of crosses at the vertices: angles are counted four times, so that quarter turns are alike."""
+
+    def __init__(self, vertices: FloatArray, normals: FloatArray) -> None:
+        self._normals = normals
+        axis = np.eye(3)[np.abs(normals).argmin(axis=1)]
+        self._x = unit_vectors(np.cross(normals, axis))
+        self._y = np.cross(normals, self._x)
+        self._sum = np.zeros(len(vertices), np.complex128)
+        self._strength = np.zeros(len(vertices))
+
+    def add(
+        self,
+        vertex: npt.NDArray[np.int64],
+        sample: npt.NDArray[np.int64],
+        falloff: FloatArray,
+        strengths: FloatArray,
+        tangents: FloatArray,
+        normals: FloatArray,
+    ) -> None:
+        """Sample `sample[i]`, one of those with `strengths`, `tangents` and `normals`, acts on `vertex[i]`."""
+        weight = falloff * strengths[sample]
+        near = (self._normals[vertex] * normals[sample]).sum(axis=1) > _SAME_SIDE
+        near &= weight > 0
+        vertex, sample, weight = vertex[near], sample[near], weight[near]
+        direction = tangents[sample]
+        angle = np.arctan2((direction * self._y[vertex]).sum(axis=1), (direction * self._x[vertex]).sum(axis=1))
+        # Squared, so that of two strokes the nearer decides.
+        np.add.at(self._sum, vertex, weight**2 * np.exp(4j * angle))
+        np.maximum.at(self._strength, vertex, weight)
+
+    def directions(self) -> FloatArray:
+        angle = np.angle(self._sum)[:, None] / 4
+        strength = np.clip(self._strength, 0, 1)[:, None]
+        directions: FloatArray = strength * (np.cos(angle) * self._x + np.sin(angle) * self._y)
+        return directions
+
+
+def _as_stroke(stroke: Stroke | npt.ArrayLike) -> Stroke:
+    points, strength = stroke if isinstance(stroke, Stroke) else (stroke, 1.0)
+    points = as_vertices(points)
+    if not np.isfinite(points).all():
+        raise ValueError("a stroke has points that are not finite")
+    if not 0 <= strength <= 1:
+        raise ValueError(f"a stroke's strength must be between 0 and 1, not {strength!r}")
+    return Stroke(points, float(strength))
+
+
+def _without_points(segments: FloatArray, strengths: FloatArray) -> tuple[FloatArray, FloatArray]:
+    has_length = (segments[:, 0] != segments[:, 1]).any(axis=1) & (strengths > 0)
+    return segments[has_length], strengths[has_length]
+
+
+def _samples(segments: FloatArray, spacing: float) -> tuple[FloatArray, FloatArray, npt.NDArray[np.int64]]:
+    """Places along segments, at most `spacing` apart unless that were too many; their directions and segments."""
+    along = segments[:, 1] - segments[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    spacing = max(spacing, float(length.sum()) / _MOST_SAMPLES)
+    count = np.maximum(1, np.ceil(length / spacing)).astype(np.int64)
+    owner = np.repeat(np.arange(len(segments)), count)
+    within = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    share = ((within + 0.5) / count[owner])[:, None]
+    return segments[owner, 0] + share * along[owner], unit_vectors(along)[owner], owner
