@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/mesh/straight_quads.h"
+#include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
@@ -38,6 +40,8 @@ struct Extraction {
   int patch_count = 0, combinatorial_count = 0;
   double singular_area = 0, combinatorial_area = 0;
   RepairRecord repairs;
+  int flawed = 0;            ///< quads, after improvement
+  double count_error = 0;    ///< | log(count / asked) |, after improvement
 };
 
 template <class Violations>
@@ -65,20 +69,12 @@ class ComponentRemesher {
     length_ = std::sqrt(result_.area / plan_.quads);
     prepare();
     const FrameField unit = solve_field();
-    Extraction best = extract_with_count(unit);
-    result_.dislocations_found = best.param.dislocations_found;
-    result_.dislocations = best.param.dislocations_left;
-    result_.patches = {best.patch_count, best.patch_count - best.combinatorial_count, best.combinatorial_count, 0};
-    result_.singular_area = best.singular_area;
-    result_.combinatorial_area = best.combinatorial_area;
-    result_.repairs += best.repairs;
-    result_.mesh = std::move(best.mesh);
-    const SurfaceIndex index(mesh_, plan_.features.face_region);
-    if (options_.improve) improve(index);
+    take(extract_with_count(unit));
     require_sound("improve", violations_of(result_.mesh));
     result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
     const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
+    const SurfaceIndex index(mesh_, {});
     for (const int q : doubtful) result_.limits.push_back(shorter_at(index, q));
     return std::move(result_);
   }
@@ -102,25 +98,39 @@ class ComponentRemesher {
     return unit;
   }
 
-  /// Extracts, and asks again for more or fewer where the count came out far from what was asked.
+  /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked.
   Extraction extract_with_count(const FrameField& unit) {
-    constexpr int kTries = 3;
-    constexpr double kTolerance = 0.04;
+    constexpr int kTries = 4;
+    constexpr double kTolerance = 0.035, kHopeless = 0.15;
+    const SurfaceIndex index(mesh_, plan_.features.face_region);
+    CountSearch search(plan_.quads);
     Extraction best;
-    double best_error = 0, asked = plan_.quads;
+    bool any = false;
     for (int i = 0; i < kTries; ++i) {
-      Extraction current = extract_by_any_means(unit, asked);
-      const double got = static_cast<double>(current.mesh.quads.size());
-      const double error = std::abs(std::log(got / plan_.quads));
-      const bool better = i == 0 || error < best_error;
-      if (better) {
-        best = std::move(current);
-        best_error = error;
+      const bool last = i + 1 == kTries;
+      Extraction current = extract_by_any_means(unit, search.next());
+      const auto count = [&] { return static_cast<double>(current.mesh.quads.size()); };
+      // What is as far off as that needs no improving, unless it is all there is.
+      if (search.error(count()) < kHopeless || (last && !any)) {
+        if (options_.improve) improve(index, current);
+        current.count_error = search.error(count());
+        if (!any || std::tie(current.flawed, current.count_error) < std::tie(best.flawed, best.count_error)) best = std::move(current);
+        any = true;
+        if (best.flawed == 0 && best.count_error < kTolerance) break;
       }
-      if (best_error < kTolerance || !better || plan_.quads < 100) break;
-      asked *= std::clamp(plan_.quads / got, 0.4, 2.5);
+      search.record(count());
     }
     return best;
+  }
+
+  void take(Extraction best) {
+    result_.dislocations_found = best.param.dislocations_found;
+    result_.dislocations = best.param.dislocations_left;
+    result_.patches = {best.patch_count, best.patch_count - best.combinatorial_count, best.combinatorial_count, 0};
+    result_.singular_area = best.singular_area;
+    result_.combinatorial_area = best.combinatorial_area;
+    result_.repairs += best.repairs;
+    result_.mesh = std::move(best.mesh);
   }
 
   Extraction extract_by_any_means(const FrameField& unit, double asked) {
@@ -198,18 +208,19 @@ class ComponentRemesher {
     return {centre, kShorterWhereFlawed * length};
   }
 
-  void improve(const SurfaceIndex& index) {
+  void improve(const SurfaceIndex& index, Extraction& extraction) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
     clock_.measure("improve", [&] {
       ImproveOptions o;
       o.fit = options_.fit;
       o.target_length = length_;
       o.usual_size = doubtful_size_;
-      const ImproveReport report = improve_quads(result_.mesh, mesh_, plan_.features, index, o, context, &whole_);
-      result_.repairs.mended_places += report.mended;
-      result_.repairs.restored_quads += report.restored_quads;
+      const ImproveReport report = improve_quads(extraction.mesh, mesh_, plan_.features, index, o, context, &whole_);
+      extraction.repairs.mended_places += report.mended;
+      extraction.repairs.restored_quads += report.restored_quads;
+      extraction.flawed = report.flawed_after;
     });
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(result_.mesh, "improve"));
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
   }
 
   const ComponentPlan& plan_;

@@ -43,12 +43,15 @@ std::vector<double> stretched(const ComponentPlan& plan, double factor) {
 
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
                              const RemeshOptions& options, const RunContext& context) {
-  // Lengths and thickness are known at vertices: these must not be too far apart.
-  constexpr double kLongestEdge = 0.8, kLeastFeature = 3;
+  // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
+  // are near enough, however small the quads: a few ten thousand triangles tell.
+  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kLeastFeature = 3;
   context.checkpoint();
   ComponentPlan plan;
   plan.length = std::min(length, std::sqrt(mesh.total_area() / least_quads(mesh)));
-  BisectedMesh fine = bisect_long_edges(mesh, kLongestEdge * plan.length, marked);
+  const double longest = std::max(kLongestEdge * plan.length, kNearEnough * std::sqrt(mesh.total_area()));
+  BisectedMesh fine = bisect_long_edges(mesh, longest, marked);
+  context.checkpoint();
   plan.mesh = std::move(fine.mesh);
   FeatureOptions features;
   features.use_sharp_angle = options.use_sharp_angle;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+namespace hybrid_quad {
+
+/// Which number of quads to ask for so that as many come out as are wanted: rounding to whole quads, features and
+/// improvement make fewer or more of them. Secant steps in the logarithms.
+class CountSearch {
+ public:
+  explicit CountSearch(double wanted) : wanted_(wanted), next_(wanted) {}
+
+  double next() const { return next_; }  ///< to ask for
+  /// What came out of asking for next().
+  void record(double got);
+  /// | log(got / wanted) |
+  double error(double got) const;
+
+ private:
+  struct Sample {
+    double asked, got;  // logarithms, of the wanted number's
+  };
+  double wanted_, next_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace hybrid_quad
