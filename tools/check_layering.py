@@ -23,10 +23,10 @@ FIRST_STAGE = "features"  # the folders before it are tools whose headers everyo
 # What a stage offers to later ones beside its own function.
 PUBLIC_HEADERS = {
     "assemble": {"feature_chains.h"},
-    "frame_field": {"frame_topology.h"},
+    "frame_field": {"guide_map.h", "frame_topology.h", "surface_curvature.h"},
     "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
-    "sizing": {"feature_size.h"},
+    "sizing": {"asked_lengths.h", "feature_size.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 FORBIDDEN_IMPORTS = {"core": ("bpy", "cli", "blender"), "cli": ("bpy", "blender"), "": ("bpy",)}

@@ -115,6 +115,10 @@ py::dict default_options() {
   result["quads"] = options.quads;
   result["edge_length"] = options.edge_length;
   result["sharp_angle"] = options.use_sharp_angle ? py::object(py::float_(options.sharp_angle)) : py::none();
+  result["field_smoothness"] = options.field_smoothness;
+  result["adaptivity"] = options.adaptivity;
+  result["anisotropy"] = options.anisotropy;
+  result["size_fidelity"] = options.size_fidelity;
   result["solver"] = options.solver == PeriodicSolver::kMultilevel ? "multilevel" : "eigen";
   result["seed"] = RunContext{}.seed;
   return result;
@@ -133,7 +137,9 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       "remesh",
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int quads,
                double edge_length, std::optional<double> sharp_angle, const IntArray& sharp_edges,
-               const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
+               const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& density,
+               const DoubleArray& vertex_frames, const DoubleArray& face_frames, double field_smoothness,
+               double adaptivity, double anisotropy, double size_fidelity, const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
                py::object cancel, py::object snapshot) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         RemeshOptions options;
@@ -142,6 +148,15 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.use_sharp_angle = sharp_angle.has_value();
         options.sharp_angle = sharp_angle.value_or(options.sharp_angle);
         options.marked_edges = pairs_from_array(sharp_edges);
+        options.vertex_guides = vectors_from_array(vertex_guides);
+        options.face_guides = vectors_from_array(face_guides);
+        options.density = values_from_array(density);
+        options.vertex_frames = frames_from_array(vertex_frames);
+        options.face_frames = frames_from_array(face_frames);
+        options.field_smoothness = field_smoothness;
+        options.adaptivity = adaptivity;
+        options.anisotropy = anisotropy;
+        options.size_fidelity = size_fidelity;
         options.solver = solver_named(solver);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), time_limit);
         try {
@@ -161,7 +176,10 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         }
       },
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
-      py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"), py::arg("solver"),
+      py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"),
+      py::arg("vertex_guides"), py::arg("face_guides"), py::arg("density"), py::arg("vertex_frames"),
+      py::arg("face_frames"), py::arg("field_smoothness"), py::arg("adaptivity"), py::arg("anisotropy"),
+      py::arg("size_fidelity"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),
       "Quad mesh, feature edges and report of one run, as a dict.");

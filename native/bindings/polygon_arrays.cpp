@@ -35,6 +35,30 @@ std::vector<std::array<int, 2>> pairs_from_array(const IntArray& pairs) {
   return result;
 }
 
+std::vector<Vector3> vectors_from_array(const DoubleArray& vectors) {
+  if (vectors.ndim() != 2 || vectors.shape(1) != 3) throw py::value_error("vectors must be a (k, 3) array");
+  const auto rows = vectors.unchecked<2>();
+  std::vector<Vector3> result;
+  result.reserve(static_cast<std::size_t>(rows.shape(0)));
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i) result.emplace_back(rows(i, 0), rows(i, 1), rows(i, 2));
+  return result;
+}
+
+std::vector<std::array<Vector3, 2>> frames_from_array(const DoubleArray& frames) {
+  if (frames.ndim() != 3 || frames.shape(1) != 2 || frames.shape(2) != 3)
+    throw py::value_error("frames must be a (k, 2, 3) array");
+  const auto at = frames.unchecked<3>();
+  std::vector<std::array<Vector3, 2>> result(static_cast<std::size_t>(at.shape(0)));
+  for (py::ssize_t i = 0; i < at.shape(0); ++i)
+    for (py::ssize_t k = 0; k < 2; ++k) result[i][k] = Vector3(at(i, k, 0), at(i, k, 1), at(i, k, 2));
+  return result;
+}
+
+std::vector<double> values_from_array(const DoubleArray& values) {
+  if (values.ndim() != 1) throw py::value_error("values must be one-dimensional");
+  return {values.data(), values.data() + values.size()};
+}
+
 py::array_t<double> array_from_points(const std::vector<Vector3>& points) {
   py::array_t<double> result({points.size(), std::size_t{3}});
   double* out = result.mutable_data();

@@ -19,6 +19,15 @@ PolygonSoup soup_from_arrays(const DoubleArray& vertices, const IntArray& face_s
 /// \param pairs k by 2
 std::vector<std::array<int, 2>> pairs_from_array(const IntArray& pairs);
 
+/// \param vectors k by 3
+std::vector<Vector3> vectors_from_array(const DoubleArray& vectors);
+
+/// \param frames k by 2 by 3
+std::vector<std::array<Vector3, 2>> frames_from_array(const DoubleArray& frames);
+
+/// \param values one-dimensional
+std::vector<double> values_from_array(const DoubleArray& values);
+
 /// n by 3, a copy
 pybind11::array_t<double> array_from_points(const std::vector<Vector3>& points);
 

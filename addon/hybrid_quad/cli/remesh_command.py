@@ -57,6 +57,40 @@ def add_to(commands: Any) -> None:
         "--guide-strength", type=float, default=1.0, metavar="S", help="how strongly, 0 to 1 (default 1)"
     )
     parser.add_argument(
+        "--field-smoothness",
+        type=float,
+        default=RemeshOptions.field_smoothness,
+        metavar="S",
+        help="0: edges follow the surface's bends, 1: as few irregular vertices as can be (default %(default)s)",
+    )
+    parser.add_argument(
+        "--adaptivity",
+        type=float,
+        default=RemeshOptions.adaptivity,
+        metavar="A",
+        help="0: edges of even length, 1: as short as the curvature asks for (default %(default)s)",
+    )
+    parser.add_argument(
+        "--anisotropy",
+        type=float,
+        default=RemeshOptions.anisotropy,
+        metavar="R",
+        help="stretch quads by at most R along the direction in which the surface bends less (default %(default)s)",
+    )
+    parser.add_argument(
+        "--size-fidelity",
+        type=float,
+        default=RemeshOptions.size_fidelity,
+        metavar="F",
+        help="where sizes vary, 0: few irregular vertices, 1: the asked sizes (default %(default)s)",
+    )
+    parser.add_argument(
+        "--density", metavar="FILE", help="a number for each vertex of IN: 2 asks for edges half as long as 1 does"
+    )
+    parser.add_argument(
+        "--frames", metavar="FILE", help="six numbers for each vertex of IN: two edge vectors in edge lengths; 0: free"
+    )
+    parser.add_argument(
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
@@ -111,6 +145,10 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
             quads=RemeshOptions.quads if arguments.quads is None else arguments.quads,
             edge_length=arguments.edge_length,
             sharp_angle=None if arguments.no_sharp else arguments.sharp_angle,
+            field_smoothness=arguments.field_smoothness,
+            adaptivity=arguments.adaptivity,
+            anisotropy=arguments.anisotropy,
+            size_fidelity=arguments.size_fidelity,
             solver=arguments.solver,
             seed=arguments.seed,
             threads=arguments.threads,
@@ -123,6 +161,8 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
 def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: float) -> RemeshResult:
     vertices, polygons = mesh_io.read_mesh(arguments.input)
     sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
+    density = _numbers(arguments.density, 1, len(vertices))
+    frames = _numbers(arguments.frames, 6, len(vertices))
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
         raise Cancelled("the time limit passed while the mesh was read", "time_limit")
     wishes: dict[str, Any] = (
@@ -134,6 +174,8 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
             polygons,
             options,
             sharp_edges=sharp_edges,
+            density=None if density is None else density.reshape(-1),
+            frames=None if frames is None else frames.reshape(-1, 2, 3),
             progress=bar.update,
             dump_stages=arguments.dump_stages,
             **wishes,
@@ -154,6 +196,16 @@ def _guides(
     if not length > 0:  # no surface: the run itself says so
         return np.zeros_like(vertices)
     return guides_from_strokes(vertices, polygons, [Stroke(line, arguments.guide_strength) for line in lines], radius)
+
+
+def _numbers(path: str | None, width: int, count: int) -> FloatArray | None:
+    """`width` numbers for each of `count` vertices, from a file."""
+    if path is None:
+        return None
+    rows = mesh_io.read_rows(path, width)
+    if len(rows) != count:
+        raise mesh_io.MeshFileError(f"{path}: has {len(rows)} lines of numbers for {count} vertices")
+    return rows
 
 
 def _write(arguments: argparse.Namespace, result: RemeshResult) -> None:

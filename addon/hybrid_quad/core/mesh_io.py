@@ -143,6 +143,30 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
     return np.array(pairs, np.int64).reshape(-1, 2)  # type: ignore[return-value]
 
 
+def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:
+    """(k, width) numbers from a text file, `width` a line; ``#`` starts a comment.
+
+    Raises
+    ------
+    MeshFileError
+        If a line holds anything else; names the line.
+    """
+    path = Path(path)
+    rows = []
+    for number, line in enumerate(_read_text(path).splitlines(), 1):
+        tokens = line.partition("#")[0].split()
+        if not tokens:
+            continue
+        try:
+            row = [float(token) for token in tokens]
+        except ValueError:
+            row = []
+        if len(row) != width:
+            raise MeshFileError(f"{path}: line {number} is not {width} numbers: {line.strip()!r}")
+        rows.append(row)
+    return np.array(rows, np.float64).reshape(-1, width)
+
+
 def read_polylines(path: str | os.PathLike[str]) -> list[FloatArray]:
     """Lines in space from a text file, (k, 3) float64 points each.
 

@@ -12,6 +12,8 @@ SOLVERS = ("multilevel", "eigen")
 # More would take more memory than a machine has, and is most often a length in the wrong unit.
 MOST_QUADS = 5_000_000
 
+MOST_ANISOTROPY = 10
+
 
 @dataclass(frozen=True)
 class RemeshOptions:
@@ -26,6 +28,16 @@ class RemeshOptions:
     sharp_angle : float or None
         Edges whose faces' normals differ by more than this many degrees (0..180) become chains of output edges.
         ``None``: only the boundary and marked edges do.
+    field_smoothness : float
+        0: edges follow the surface's bends wherever they are clear at the size of the quads; 1: as few irregular vertices
+        as can be, whatever the bends.
+    adaptivity : float
+        0: edges of even length; 1: as short as the curvature asks for, so that all quads are about equally far from the
+        surface. Within a third and twice the usual length.
+    anisotropy : float
+        The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
+    size_fidelity : float
+        Where sizes vary (`adaptivity`, density, frames): 0 keeps irregular vertices few, 1 keeps the asked sizes.
     solver : {"multilevel", "eigen"}
         How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
     seed : int
@@ -39,6 +51,10 @@ class RemeshOptions:
     quads: int = 5000
     edge_length: float | None = None
     sharp_angle: float | None = 40.0
+    field_smoothness: float = 0.5
+    adaptivity: float = 0.0
+    anisotropy: float = 1.0
+    size_fidelity: float = 0.5
     solver: str = "multilevel"
     seed: int = 0
     threads: int = 0
@@ -56,6 +72,13 @@ class RemeshOptions:
         _require(
             self.sharp_angle is None or 0 <= self.sharp_angle <= 180,
             f"sharp_angle must be between 0 and 180 degrees, not {self.sharp_angle!r}",
+        )
+        for name in ("field_smoothness", "adaptivity", "size_fidelity"):
+            value = getattr(self, name)
+            _require(0 <= value <= 1, f"{name} must be between 0 and 1, not {value!r}")
+        _require(
+            1 <= self.anisotropy <= MOST_ANISOTROPY,
+            f"anisotropy must be between 1 and {MOST_ANISOTROPY}, not {self.anisotropy!r}",
         )
         _require(self.solver in SOLVERS, f"solver must be one of {', '.join(SOLVERS)}, not {self.solver!r}")
         _require(
@@ -76,6 +99,10 @@ class RemeshOptions:
             "quads": int(self.quads),
             "edge_length": float(self.edge_length or 0.0),
             "sharp_angle": None if self.sharp_angle is None else float(self.sharp_angle),
+            "field_smoothness": float(self.field_smoothness),
+            "adaptivity": float(self.adaptivity),
+            "anisotropy": float(self.anisotropy),
+            "size_fidelity": float(self.size_fidelity),
             "solver": self.solver,
             "seed": int(self.seed),
             "threads": int(self.threads) or usable_threads(),

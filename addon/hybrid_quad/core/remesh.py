@@ -25,6 +25,7 @@ from .mesh_arrays import (
 )
 from .options import MOST_QUADS, RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
+from .wishes import DENSITY_BOUNDS, native_wishes
 
 ProgressCallback = Callable[[str, float], object]
 CancelCallback = Callable[[], bool]
@@ -68,6 +69,13 @@ def remesh(
     edge_length: float | None = None,
     sharp_angle: float | None = 40.0,
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    guides: npt.ArrayLike | None = None,
+    density: npt.ArrayLike | None = None,
+    frames: npt.ArrayLike | None = None,
+    field_smoothness: float = 0.5,
+    adaptivity: float = 0.0,
+    anisotropy: float = 1.0,
+    size_fidelity: float = 0.5,
     solver: str = "multilevel",
     seed: int = 0,
     threads: int = 0,
@@ -96,6 +104,25 @@ def remesh(
         Edges whose faces' normals differ by more than this many degrees are features; ``None`` takes none.
     sharp_edges : (k, 2) int, optional
         Vertex pairs that are features whatever their angle. Each must be an edge of a face.
+    guides : (n, 3) or (m, 3) float, optional
+        Directions that edges should take at the n vertices or m faces, in the coordinates of `vertices`; a direction, its
+        opposite and those across it are the same. Zero: free; the length is the strength, and cut at 1. Where there are
+        as many vertices as faces, of the vertices.
+    density : (n,) float, optional
+        For every vertex, 1 where nothing is asked, 2 for edges half as long; cut at 0.1 and 10. The number of quads stays
+        the asked one; with `edge_length`, the lengths are `edge_length` / `density`.
+    frames : (n, 2, 3) or (m, 2, 3) float, optional
+        The two edge vectors of a quad, in usual edge lengths, at vertices or faces; zero: free. Neither orthogonal nor equal
+        they need to be, for sheared and stretched quads; up to ten times longer than wide.
+    field_smoothness : float
+        0: edges follow the surface's bends wherever these are clear at the size of the quads, 1: as few irregular vertices
+        as can be.
+    adaptivity : float
+        0: edges of even length, 1: as short as the curvature asks for.
+    anisotropy : float
+        The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
+    size_fidelity : float
+        Where sizes vary: 0 keeps irregular vertices few, 1 keeps the asked sizes.
     solver : {"multilevel", "eigen"}
         How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
     seed : int
@@ -129,12 +156,27 @@ def remesh(
     ValueError, TypeError
         If an option makes no sense, or an array has the wrong shape or type.
     """
-    options = RemeshOptions(quads, edge_length, sharp_angle, solver, seed, threads, time_limit)
+    options = RemeshOptions(
+        quads=quads,
+        edge_length=edge_length,
+        sharp_angle=sharp_angle,
+        field_smoothness=field_smoothness,
+        adaptivity=adaptivity,
+        anisotropy=anisotropy,
+        size_fidelity=size_fidelity,
+        solver=solver,
+        seed=seed,
+        threads=threads,
+        time_limit=time_limit,
+    )
     return remesh_with_options(
         vertices,
         faces,
         options,
         sharp_edges=sharp_edges,
+        guides=guides,
+        density=density,
+        frames=frames,
         progress=progress,
         cancel=cancel,
         dump_stages=dump_stages,
@@ -148,6 +190,9 @@ def remesh_with_options(
     options: RemeshOptions,
     *,
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    guides: npt.ArrayLike | None = None,
+    density: npt.ArrayLike | None = None,
+    frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
     dump_stages: PathLike | None = None,
@@ -158,12 +203,14 @@ def remesh_with_options(
 
     points, polygons, marked = as_vertices(vertices), as_polygons(faces), as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
-    _require_enough_length(points, polygons, options)
+    wishes = native_wishes(guides, density, frames, len(points), len(polygons.sizes))
+    _require_enough_length(points, polygons, options, wishes["density"])
     result = native.load().remesh(
         points,
         polygons.sizes,
         polygons.vertices,
         sharp_edges=marked,
+        **wishes,
         progress=progress,
         cancel=cancel,
         snapshot=_snapshot_receiver(dump_stages, on_snapshot),
@@ -173,10 +220,14 @@ def remesh_with_options(
     return RemeshResult(**result)
 
 
-def _require_enough_length(points: FloatArray, polygons: Polygons, options: RemeshOptions) -> None:
+def _require_enough_length(
+    points: FloatArray, polygons: Polygons, options: RemeshOptions, density: FloatArray
+) -> None:
     if options.edge_length is None:
         return
     expected = surface_area(points, polygons) / options.edge_length**2
+    if len(density):
+        expected *= float((np.clip(density, *DENSITY_BOUNDS) ** 2).mean())
     if expected > MOST_QUADS:
         raise InputError(
             "too_many_quads",

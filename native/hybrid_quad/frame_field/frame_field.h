@@ -31,6 +31,13 @@ struct FrameFieldOptions {
   int coarsest = 300;      ///< unknowns of the level that is solved directly
   /// Diffusion afterwards, in squared quad edges, one step each: what is smaller than a quad makes no cones.
   std::vector<double> diffusion_times{1.0, 1.0, 1.0};
+  /// #F or empty: directions that a frame's axes should take, as vectors in the faces' planes; the length is the strength,
+  /// 0 (free) to 1 (followed wherever features let it).
+  std::vector<Vector3> guides;
+  /// 0..1: how much the surface's curvature guides the field where it bends one way more than the other.
+  double curvature_alignment = 0;
+  /// 0..1: how far frames turn, and cones arise, so that quads of varying target lengths fit together.
+  double turn_for_lengths = 0;
 };
 
 /// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1), solved

@@ -4,6 +4,7 @@
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/soft_alignment.h"
 #include "hybrid_quad/frame_field/split_cones.h"
 
 namespace hybrid_quad {
@@ -49,8 +50,20 @@ double link_stiffness(const WorkingSurface& surface, int h, double area_sum) {
   return surface.features.is_feature(h) ? w * kAcrossFeatures : w;
 }
 
-CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles) {
+/// Adds the soft pulls to the system, so that relaxation and diffusion alike feel them.
+void pull_softly(const std::vector<Complex>& pulls, CrossUnknowns& cross) {
+  for (std::size_t f = 0; f < pulls.size(); ++f) {
+    const int p = cross.unknown[f];
+    if (p < 0) continue;
+    cross.system.diagonal[p] += 2 * cross.diffusion_mass[p] * std::abs(pulls[f]);
+    cross.system.source[p] += 2 * cross.diffusion_mass[p] * pulls[f];
+  }
+}
+
+CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles, const FrameFieldOptions& options) {
   const TriangleMesh& mesh = surface.mesh;
+  std::vector<double> turns;
+  if (options.turn_for_lengths > 0) turns = turns_for_lengths(surface);
   CrossUnknowns cross;
   fix_faces_at_features(surface, angles, cross);
   std::vector<double> area(mesh.face_count());
@@ -62,7 +75,8 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
     const int f = h / 3, g = o / 3, p = cross.unknown[f], q = cross.unknown[g];
     if (p < 0 && q < 0) continue;
     const double w = link_stiffness(surface, h, area[f] + area[g]);
-    const Complex carry = std::polar(w, 4 * angles.transport(h, o));  // z_g from z_f
+    const double turn = turns.empty() ? 0.0 : options.turn_for_lengths * turns[h];
+    const Complex carry = std::polar(w, 4 * (angles.transport(h, o) + turn));  // z_g from z_f
     if (p >= 0) system.diagonal[p] += w;
     if (q >= 0) system.diagonal[q] += w;
     if (p >= 0 && q >= 0) {
@@ -80,6 +94,7 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
       const double share = area[f] / (h * h);
       cross.diffusion_mass[cross.unknown[f]] = std::isfinite(share) ? std::max(share, 1e-6) : 1e-6;
     }
+  pull_softly(soft_pulls(surface, options), cross);
   return cross;
 }
 
@@ -95,7 +110,7 @@ std::vector<double> directions_of(const CrossUnknowns& cross, const std::vector<
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
   const FaceAngles angles(mesh);
-  const CrossUnknowns cross = assemble_cross_system(surface, angles);
+  const CrossUnknowns cross = assemble_cross_system(surface, angles, options);
   context.checkpoint(0.1);
   std::vector<Complex> z = relax_cross_system(cross.system, {options.sweeps, options.coarsest}, context);
   std::vector<double> mass(z.size());

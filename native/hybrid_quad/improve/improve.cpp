@@ -50,6 +50,8 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
+  smoothing.aspect_power = options.aspect_power;
+  smoothing.guides = options.guides;
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);

@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/surface_index.h"
 
@@ -12,6 +13,8 @@ struct ImproveOptions {
   int smoothing_sweeps = 20;
   double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
+  double aspect_power = 0.7;       ///< 0: quads become squares; 1: they keep whatever aspect they have
+  const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   double target_length = 0;        ///< mean quad edge, 0 = measured
   double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (flawed_quads)
 };

@@ -203,6 +203,34 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
   return sum;
 }
 
+GuidePull Smoother::guide_pull(int v, double size) const {
+  GuidePull sum;
+  if (options_.guides == nullptr || options_.guides->empty()) return sum;
+  const auto guide_at = [&](int w) { return options_.guides->at(piece_.face[w], piece_.mesh.positions[w]); };
+  const Vector3 own = guide_at(v), normal = piece_.input.normal(piece_.face[v]);
+  if (own.isZero(0)) return sum;
+  for (const int q : piece_.mesh.quads_at(v)) {
+    const int k = piece_.mesh.corner_of(q, v);
+    for (const int other : {piece_.mesh.quad(q)[(k + 1) & 3], piece_.mesh.quad(q)[(k + 3) & 3]}) {
+      const Vector3 edge = piece_.mesh.positions[other] - piece_.mesh.positions[v];
+      // The guide in the middle of the edge, or an edge would be pulled to the inside of every bend.
+      const auto along_edge = [&](const Vector3& guide) {
+        const Vector3 turned = normal.cross(guide);
+        const Vector3& axis = std::abs(edge.dot(guide)) > std::abs(edge.dot(turned)) ? guide : turned;
+        return edge.dot(axis) < 0 ? Vector3(-axis) : axis;
+      };
+      Vector3 along = along_edge(own);
+      if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guide_at(other)));
+      const Vector3 across = normal.cross(along);  // as long as the guide is strong
+      // Every edge is met at two quads, but for those on a boundary.
+      const double weight = 0.5 * options_.guide_weight / (size * size);
+      sum.pull += weight * edge.dot(across) * across;
+      sum.stiffness += weight * across * across.transpose();
+    }
+  }
+  return sum;
+}
+
 bool Smoother::may_slide(int v) const {
   const int curve = piece_.mesh.anchor(v);
   return curve >= 0 && curve < static_cast<int>(piece_.curves.size()) && piece_.curves[curve].length() > 0;
@@ -225,6 +253,9 @@ double Smoother::move_free(int v, double size) {
   basis[1] = normal.cross(basis[0]);
   Derivatives d;
   const double before = energy(v, start, basis, 2, d);
+  const GuidePull guide = guide_pull(v, size);
+  for (int i = 0; i < 2; ++i) d.gradient[i] -= 2 * guide.pull.dot(basis[i]);
+  for (int i = 0; i < 3; ++i) d.hessian[i] += 2 * basis[i / 2].dot(guide.stiffness * basis[(i + 1) / 2]);
   double h00 = d.hessian[0], h01 = d.hessian[1], h11 = d.hessian[2];
   const double trace = h00 + h11, half_gap = std::hypot(0.5 * (h00 - h11), h01);
   const double least = 0.5 * trace - half_gap, most = std::max(std::abs(least), std::abs(0.5 * trace + half_gap));
@@ -241,7 +272,7 @@ double Smoother::move_free(int v, double size) {
   if (length > kLongestStep * size) step *= kLongestStep * size / length;
   for (int k = 0; k < kBacktracks; ++k) {
     const SurfacePoint target = piece_.walk(start + step, piece_.face[v]);
-    if (target.face >= 0 && energy(v, target.position) < before) {
+    if (target.face >= 0 && energy(v, target.position) + guide.change(target.position - start) < before) {
       piece_.mesh.positions[v] = target.position;
       piece_.face[v] = target.face;
       return (target.position - start).norm();

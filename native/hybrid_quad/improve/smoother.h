@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/improve/corner_energy.h"
 #include "hybrid_quad/improve/workpiece.h"
 
@@ -11,7 +12,18 @@ namespace hybrid_quad {
 struct SmootherOptions {
   double chord_spring = 10;      ///< pull of curve vertices to equal chord error
   double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
+  const GuideMap* guides = nullptr;  ///< on the input, may be null
+  double guide_weight = 10;      ///< of the squared angle between an edge and a guide, against the corners' shape
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
+};
+
+/// What it costs a vertex to move by d while its edges should keep to a guide's directions:
+///   constant - 2 pull . d + d . stiffness d.
+struct GuidePull {
+  Vector3 pull = Vector3::Zero();
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+
+  double change(const Vector3& d) const { return d.dot(stiffness * d) - 2 * pull.dot(d); }
 };
 
 /// Moves vertices one at a time by Newton steps on the corner energy of the quads around (Gauss-Seidel in vertex order),
@@ -42,6 +54,7 @@ class Smoother {
   bool is_tangled() const;
   double energy(int v, const Vector3& at) const;
   double energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const;
+  GuidePull guide_pull(int v, double size) const;
   double edge_size(int v) const;
   double move(int v);
   double move_free(int v, double size);

@@ -44,6 +44,9 @@ struct Extraction {
   double count_error = 0;    ///< | log(count / asked) |, after improvement
 };
 
+/// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
+double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
+
 template <class Violations>
 void require_sound(const std::string& stage, const Violations& violations) {
   if (!violations.empty()) throw InternalError(stage, violations.front());
@@ -52,13 +55,14 @@ void require_sound(const std::string& stage, const Violations& violations) {
 class ComponentRemesher {
  public:
   /// \param whole  the surface that the component is part of
-  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options, const Settings& settings,
-                    StageClock& clock, const RunContext& context)
+  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+                    const RemeshOptions& options, const Settings& settings, StageClock& clock, const RunContext& context)
       : plan_(plan),
         mesh_(plan.mesh),
         whole_(whole),
         doubtful_size_(kDoubtfulSize * std::sqrt(whole.mesh().total_area())),
         least_size_(kLeastSize * std::sqrt(whole.mesh().total_area())),
+        wishes_(wishes),
         options_(options),
         settings_(settings),
         clock_(clock),
@@ -83,7 +87,7 @@ class ComponentRemesher {
   void prepare() {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
     surface_ = clock_.measure("working surface", [&] {
-      return build_working_surface(mesh_, plan_.features, plan_.target, WorkingSurfaceOptions{},
+      return build_working_surface(mesh_, plan_.features, plan_.target, working_surface_options(wishes_),
                                    context_.in_stage("working surface", 0, 0.2));
     });
     result_.working_faces = surface_.mesh.face_count();
@@ -92,7 +96,13 @@ class ComponentRemesher {
 
   FrameField solve_field() {
     const RunContext context = context_.in_stage("frame field", 0.2, 0.3);
-    FrameField unit = clock_.measure("frame field", [&] { return solve_frame_field(surface_, FrameFieldOptions{}, context); });
+    FrameField unit = clock_.measure("frame field", [&] {
+      const FrameFieldOptions o = field_options(surface_, wishes_, options_);
+      FrameField field = solve_frame_field(surface_, o, context);
+      direction_weight_ = direction_weights(o);
+      stretch_ = stretch_of(surface_, field, wishes_, options_);
+      return field;
+    });
     result_.field_singularities = unit.cone_count();
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(unit, surface_, "frame field"));
     return unit;
@@ -148,7 +158,11 @@ class ComponentRemesher {
   Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
     const SizedFrames sized = clock_.measure("sizing", [&] {
       SizingOptions o;
-      o.curl_weight = settings_.curl_weight;
+      constexpr double kWhereAsked = 10;  // sizes that someone asked for count more than even ones
+      const double fidelity = curl_weight_of(options_.size_fidelity) * (wishes_.density.empty() ? 1 : kWhereAsked);
+      o.curl_weight = std::max(settings_.curl_weight, fidelity);
+      o.direction_weight = direction_weight_;
+      o.stretch = stretch_;
       return apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(sized.field, surface_, "sizing"));
@@ -215,6 +229,9 @@ class ComponentRemesher {
       o.fit = options_.fit;
       o.target_length = length_;
       o.usual_size = doubtful_size_;
+      const GuideMap guides = guides_on(wishes_, mesh_);
+      o.guides = &guides;
+      if (wishes_.most_stretch > 1) o.aspect_power = 1;
       const ImproveReport report = improve_quads(extraction.mesh, mesh_, plan_.features, index, o, context, &whole_);
       extraction.repairs.mended_places += report.mended;
       extraction.repairs.restored_quads += report.restored_quads;
@@ -227,12 +244,15 @@ class ComponentRemesher {
   const TriangleMesh& mesh_;
   const SurfaceIndex& whole_;
   double doubtful_size_, least_size_;  // scene units
+  const Wishes& wishes_;
   const RemeshOptions& options_;
   const Settings& settings_;
   StageClock& clock_;
   const RunContext& context_;
   double length_ = 0;
   WorkingSurface surface_;
+  std::vector<double> direction_weight_;  ///< see SizingOptions
+  std::vector<Eigen::Matrix3d> stretch_;
   ComponentResult result_;
 };
 
@@ -248,8 +268,8 @@ double badness(const ComponentResult& result) {
 
 }  // namespace
 
-ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options,
-                                 StageClock& clock, const RunContext& context) {
+ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+                                 const RemeshOptions& options, StageClock& clock, const RunContext& context) {
   ComponentResult best;
   std::string broken;
   bool any = false;
@@ -261,7 +281,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
       const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, limits) : ComponentPlan{};
-      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, options, settings, clock, pass).run();
+      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, wishes, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       if (!any || badness(result) < badness(best))

@@ -5,6 +5,7 @@
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 #include "hybrid_quad/pipeline/stage_clock.h"
+#include "hybrid_quad/pipeline/wishes.h"
 
 namespace hybrid_quad {
 
@@ -26,7 +27,7 @@ struct ComponentResult {
 
 /// Remeshes one connected component (paper 3 and 4, then improvement).
 /// \param whole  the surface that the component is part of
-ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const RemeshOptions& options,
-                                 StageClock& clock, const RunContext& context);
+ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+                                 const RemeshOptions& options, StageClock& clock, const RunContext& context);
 
 }  // namespace hybrid_quad

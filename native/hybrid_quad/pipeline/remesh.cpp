@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
 
@@ -12,6 +13,7 @@ namespace {
 struct Component {
   TriangleMesh mesh;
   std::vector<int> vertex;  ///< #V: vertex of the whole mesh
+  std::vector<int> face;    ///< #F: face of the whole mesh
 };
 
 /// Connected components in the order of their first faces.
@@ -53,7 +55,7 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
       }
     }
     for (const int v : vertex) local[v] = -1;
-    out.push_back({TriangleMesh(std::move(positions), std::move(faces), std::move(opposite)), std::move(vertex)});
+    out.push_back({TriangleMesh(std::move(positions), std::move(faces), std::move(opposite)), std::move(vertex), members});
   }
   return out;
 }
@@ -138,6 +140,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   StageClock clock;
   const BuiltMesh built = clock.measure("mesh", [&] {
     context.in_stage("mesh", 0, 0.02).checkpoint();
+    check_wishes(soup, options);
     return build_mesh(soup);
   });
   report.defects = built.defects;
@@ -147,13 +150,23 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   const std::vector<Component> components = split_components(built.mesh);
   report.components = static_cast<int>(components.size());
   const double area = built.mesh.total_area();
-  const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(area / std::max(1, options.quads));
-
+  const double even_length = options.edge_length > 0 ? options.edge_length : std::sqrt(area / std::max(1, options.quads));
   std::vector<ComponentPlan> plans;
+  std::vector<Wishes> wishes;
+  double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
-    for (const Component& component : components)
-      plans.push_back(plan_component(component.mesh, length, marked_in(component, built, options.marked_edges), options, plan_context));
+    std::vector<std::vector<std::array<int, 2>>> marked;
+    double weighted_area = 0;  // at density 1
+    for (const Component& c : components) {
+      marked.push_back(marked_in(c, built, options.marked_edges));
+      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, built, marked.back(), options, even_length, plan_context));
+      weighted_area += area_by_density(c.mesh, wishes.back().density);
+    }
+    const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(weighted_area / std::max(1, options.quads));
+    wanted = weighted_area / (length * length);
+    for (std::size_t i = 0; i < components.size(); ++i)
+      plans.push_back(plan_component(components[i].mesh, length, marked[i], wishes[i], options, plan_context));
     if (!(options.edge_length > 0)) balance_plans(plans, options.quads);
   });
 
@@ -165,7 +178,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], whole, options, clock, part_context));
+    parts.push_back(remesh_component(plans[i], whole, wishes[i], options, clock, part_context));
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex) input_vertex.push_back(built.input_vertex[v]);
     append(result, parts.back(), input_vertex);
@@ -177,7 +190,6 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   report.patches.combinatorial_area_fraction = combinatorial_area / area;
   report.quads = static_cast<int>(result.mesh.quads.size());
   report.vertices = static_cast<int>(result.mesh.positions.size());
-  const double wanted = area / (length * length);
   if (std::abs(report.quads / wanted - 1) > 0.1)
     report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
                               ": features or small parts need another number");

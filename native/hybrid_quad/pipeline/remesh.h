@@ -17,6 +17,18 @@ struct RemeshOptions {
   bool use_sharp_angle = true;
   double sharp_angle = 40;         ///< degrees between face normals that make a feature edge
   std::vector<std::array<int, 2>> marked_edges;  ///< pairs of input vertices that are features whatever their angle
+  /// Directions that edges should take: vectors in the coordinates of the input, one for each vertex (or polygon, or both,
+  /// where a polygon's own goes first), or none. Zero: free; the length is the strength, 0..1.
+  std::vector<Vector3> vertex_guides, face_guides;
+  /// One for each vertex, or none: 2 asks for edges half as long. 0.1..10, relative unless edge_length > 0.
+  std::vector<double> density;
+  /// Frames: the two edge vectors of a quad, in usual edge lengths; neither equal nor orthogonal they need to be. Two zero
+  /// vectors: free. By vertex or polygon, as guides.
+  std::vector<std::array<Vector3, 2>> vertex_frames, face_frames;
+  double field_smoothness = 0.5;   ///< 0: edges follow the surface's bends, 1: as few singularities as can be
+  double adaptivity = 0;           ///< 0: even, 1: edges as short as the surface's curvature asks for
+  double anisotropy = 1;           ///< most by which quads are stretched along the direction that bends less
+  double size_fidelity = 0.5;      ///< 0: as few irregular vertices as can be, 1: the asked lengths, whatever that takes
   PeriodicSolver solver = PeriodicSolver::kMultilevel;
   bool improve = true;
   bool fit = true;                 ///< let free vertices leave the surface a little so that the quads' faces lie nearer to it

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hybrid_quad/mesh/edge_bisection.h"
+#include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
 
@@ -33,33 +34,35 @@ double least_quads(const TriangleMesh& mesh) {
 /// Target lengths where everything that nothing limits is `factor` times as long.
 std::vector<double> stretched(const ComponentPlan& plan, double factor) {
   std::vector<double> longer = plan.target;
-  for (double& t : longer)
-    if (t >= plan.length) t = factor * plan.length;
-  grade_lengths(plan.mesh, factor * plan.length, longer);
+  for (std::size_t v = 0; v < longer.size(); ++v)
+    if (longer[v] >= plan.unlimited[v]) longer[v] = factor * plan.unlimited[v];
+  grade_lengths(plan.mesh, factor * *std::max_element(plan.unlimited.begin(), plan.unlimited.end()), longer);
   return longer;
 }
 
 }  // namespace
 
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
-                             const RemeshOptions& options, const RunContext& context) {
+                             const Wishes& wishes, const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
-  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kLeastFeature = 3;
+  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01;
   context.checkpoint();
   ComponentPlan plan;
-  plan.length = std::min(length, std::sqrt(mesh.total_area() / least_quads(mesh)));
-  const double longest = std::max(kLongestEdge * plan.length, kNearEnough * std::sqrt(mesh.total_area()));
+  plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / least_quads(mesh)));
+  const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
+  const double longest = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
   BisectedMesh fine = bisect_long_edges(mesh, longest, marked);
   context.checkpoint();
   plan.mesh = std::move(fine.mesh);
-  FeatureOptions features;
-  features.use_sharp_angle = options.use_sharp_angle;
-  features.sharp_angle = options.sharp_angle;
-  features.minimum_length = kLeastFeature * plan.length;
+  FeatureOptions features = feature_options(options, plan.length);
   features.marked_edges = std::move(fine.marked_edges);
   plan.features = detect_features(plan.mesh, features, context);
-  plan.target = feature_sized_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, FeatureSizeOptions{}, context);
+  const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);
+  plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
+  for (std::size_t v = 0; v < density.size(); ++v) plan.unlimited[v] = plan.length / density[v];
+  plan.target =
+      asked_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, density, FeatureSizeOptions{}, context);
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
   return plan;
 }

@@ -5,6 +5,7 @@
 
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/pipeline/wishes.h"
 #include "hybrid_quad/sizing/feature_size.h"
 
 namespace hybrid_quad {
@@ -13,7 +14,8 @@ namespace hybrid_quad {
 struct ComponentPlan {
   TriangleMesh mesh;            ///< the component with long edges halved: the same surface, old vertices first
   FeatureGraph features;
-  double length = 0;            ///< asked edge length where nothing limits it (scene units)
+  double length = 0;            ///< asked edge length at density 1, where nothing limits it (scene units)
+  std::vector<double> unlimited;  ///< #V: asked edge length where nothing limits it
   std::vector<double> target;   ///< #V: asked edge length
   double quads = 0;             ///< that fit
 };
@@ -21,7 +23,7 @@ struct ComponentPlan {
 /// \param length  edge length asked for; a component too small for it gets a shorter one
 /// \param marked  pairs of the component's vertices that are features
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
-                             const RemeshOptions& options, const RunContext& context);
+                             const Wishes& wishes, const RemeshOptions& options, const RunContext& context);
 
 /// Small features and thin parts need shorter edges than was asked: lengthens the others, in all components alike and by
 /// no more than three fifths, until as many quads fit as were asked for.

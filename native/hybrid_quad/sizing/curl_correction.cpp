@@ -86,8 +86,9 @@ RowConstraints gather_constraints(const WorkingSurface& surface, const FrameFiel
   constraints.compliance.reserve(mesh.halfedge_count());
   for (int f = 0; f < faces; ++f) {
     const double share = area[f] / mean + 1e-4;  // a face without area still resists
-    constraints.stiffness[2 * f] = Vector2(1, 2) * share;
-    constraints.stiffness[2 * f + 1] = Vector2(2, 1) * share;
+    const double turning = options.direction_weight.empty() ? 2.0 : 2 * options.direction_weight[f];
+    constraints.stiffness[2 * f] = Vector2(1, turning) * share;
+    constraints.stiffness[2 * f + 1] = Vector2(turning, 1) * share;
     for (int h = 3 * f; h < 3 * f + 3; ++h) {
       const int o = mesh.opposite(h);
       if (o > h) add_edge(field, mesh, h, (area[f] + area[o / 3]) / (3 * mean) + 1e-4, constraints);

@@ -10,6 +10,8 @@ namespace hybrid_quad {
 struct CurlCorrectionOptions {
   double curl_weight = 1e-5;     ///< lambda
   double feature_weight = 30.0;
+  /// #F or empty: how firmly a frame keeps its directions, 1 = as any; its lengths stay as free as they were.
+  std::vector<double> direction_weight;
   int max_raises = 1;              ///< solves with more lambda around folded faces, while they are more than
   double tolerated_folds = 1e-3;   ///< this share of all faces
 };
@@ -19,7 +21,8 @@ bool is_sound_correction(const std::array<double, 4>& x);
 
 /// How to change every frame, (du, dv) -> X (du, dv) with X = {X00, X01, X10, X11}, so that the edge of two faces
 /// measures the same in both: the minimum over X of
-///   sum over edges  w |X_f d_f + turn (X_g d_g)|^2  +  lambda sum over faces  area (|X - I|^2 weighted 1 on the diagonal, 2 off it)
+///   sum over edges  w |X_f d_f + turn (X_g d_g)|^2  +  lambda sum over faces  area (|X - I|^2 weighted 1 on the diagonal, 2 off it, or
+/// more where directions are to stay)
 /// and of the transversal part of feature edges (MATH 7). Solved for one multiplier per edge and row, which is a screened
 /// Laplacian on edges with a third of the primal system's fill (FEW_SINGULARITIES 3).
 /// \return #F matrices; the identity where nothing couples

@@ -9,12 +9,19 @@ namespace hybrid_quad {
 
 namespace {
 
-/// Rows of unit frames become rows that measure in quads.
-void scale_to_target(const WorkingSurface& surface, const std::vector<double>& length_factor, FrameField& field) {
+/// Rows of unit frames become rows that measure in quads: edges F = stretch * axes * length, rows F^-1.
+void scale_to_target(const WorkingSurface& surface, const std::vector<double>& length_factor,
+                     const std::vector<Eigen::Matrix3d>& stretch, FrameField& field) {
   for (int f = 0; f < surface.mesh.face_count(); ++f) {
     const double length = surface.target_length[f] * (length_factor.empty() ? 1.0 : length_factor[f]);
     field.du[f] /= length;
     field.dv[f] /= length;
+    if (stretch.empty()) continue;
+    // Symmetric in the face's plane; adding the normal makes it invertible in space.
+    const Vector3 normal = surface.mesh.normal(f);
+    const Eigen::Matrix3d inverse = (stretch[f] + normal * normal.transpose()).inverse();
+    field.du[f] = inverse * field.du[f];
+    field.dv[f] = inverse * field.dv[f];
   }
 }
 
@@ -78,11 +85,12 @@ SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_f
   std::vector<double> length_factor;
   if (options.conformal)
     length_factor = conformal_length_factor(surface, unit_frames, options.conformal_clip, context);
-  scale_to_target(surface, length_factor, sized.field);
+  scale_to_target(surface, length_factor, options.stretch, sized.field);
   if (options.correct_curl) {
     CurlCorrectionOptions correction;
     correction.curl_weight = options.curl_weight;
     correction.feature_weight = options.feature_weight;
+    correction.direction_weight = options.direction_weight;
     const auto x = curl_correction(surface, sized.field, correction, context);
     apply_correction(mesh, x, sized);
   }

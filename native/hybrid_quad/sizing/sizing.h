@@ -12,6 +12,9 @@ struct SizingOptions {
   bool correct_curl = true;         ///< 4-parameter curl correction of MATH 7
   double curl_weight = 1e-5;        ///< lambda: small = integrable frames, large = the asked frames
   double feature_weight = 30.0;     ///< keeps features isolines during the correction
+  std::vector<double> direction_weight;  ///< #F or empty: how firmly frames keep their directions, 1 = as any
+  /// #F or empty: symmetric maps of the faces' planes that take a unit frame's axes to a quad's edges, in target lengths.
+  std::vector<Eigen::Matrix3d> stretch;
 };
 
 struct SizedFrames {

@@ -1,0 +1,96 @@
+#include "hybrid_quad/frame_field/surface_curvature.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/frame_field/face_angles.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+/// Bending of a region, integrated: divided by the area it is the curvature tensor, with its directions swapped.
+struct Bending {
+  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+  double area = 0;
+};
+
+/// Angle between the faces of edge h, positive where the edge is convex.
+double fold_angle(const TriangleMesh& mesh, int h, const Vector3& along) {
+  const Vector3 here = mesh.normal(h / 3), there = mesh.normal(mesh.opposite(h) / 3);
+  return std::atan2(here.cross(there).dot(along), here.dot(there));
+}
+
+std::vector<Bending> bending_of_faces(const WorkingSurface& surface) {
+  const TriangleMesh& mesh = surface.mesh;
+  std::vector<Bending> bending(mesh.face_count());
+  for (int f = 0; f < mesh.face_count(); ++f) bending[f].area = mesh.area(f);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int o = mesh.opposite(h);
+    if (o < h || surface.features.is_feature(h)) continue;
+    const Vector3 e = mesh.edge_vector(h);
+    const double length = e.norm();
+    if (!(length > 0)) continue;
+    const Eigen::Matrix3d half = (0.5 * fold_angle(mesh, h, e / length) / length) * e * e.transpose();
+    bending[h / 3].tensor += half;
+    bending[o / 3].tensor += half;
+  }
+  return bending;
+}
+
+/// One step of averaging with the neighbours. On even triangles a step spreads by 0.35 edges (standard deviation).
+void spread(const WorkingSurface& surface, std::vector<Bending>& bending) {
+  const std::vector<Bending> before = bending;
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
+    const int o = surface.mesh.opposite(h);
+    if (o < 0 || surface.features.is_feature(h)) continue;
+    bending[h / 3].tensor += before[o / 3].tensor;
+    bending[h / 3].area += before[o / 3].area;
+  }
+  for (std::size_t f = 0; f < bending.size(); ++f) {
+    bending[f].tensor /= 4;
+    bending[f].area /= 4;
+  }
+}
+
+/// Steps that spread by 0.73 quad edges to either side.
+int averaging_steps(const WorkingSurface& surface) {
+  constexpr double kSpread = 0.73, kStep = 0.35, kMostSteps = 200;
+  double square = 0;  // of a triangle's edge, in quad edges
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
+    const double edge = surface.mesh.edge_length(h) / surface.target_length[h / 3];
+    square += edge * edge;
+  }
+  square /= std::max(1, surface.mesh.halfedge_count());
+  const double steps = kSpread * kSpread / (kStep * kStep * square);
+  return steps < kMostSteps ? static_cast<int>(std::ceil(steps)) : static_cast<int>(kMostSteps);
+}
+
+PrincipalCurvature principal(const Bending& bending, const FaceBasis& axes) {
+  PrincipalCurvature result;
+  if (!(bending.area > 0)) return result;
+  const Eigen::Matrix<double, 3, 2> plane = (Eigen::Matrix<double, 3, 2>() << axes.along, axes.across).finished();
+  const Eigen::Matrix2d tensor = plane.transpose() * bending.tensor * plane / bending.area;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(tensor);
+  if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) return result;
+  int strong = 0;
+  if (std::abs(solver.eigenvalues()[1]) > std::abs(solver.eigenvalues()[0])) strong = 1;
+  result.strong = solver.eigenvalues()[strong];
+  result.weak = solver.eigenvalues()[1 - strong];
+  // Edges run along the direction in which the surface does not bend there: the other eigenvector is the bent one.
+  if (result.strong != result.weak) result.direction = plane * solver.eigenvectors().col(1 - strong);
+  return result;
+}
+
+}  // namespace
+
+std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface) {
+  std::vector<Bending> bending = bending_of_faces(surface);
+  for (int step = averaging_steps(surface); step > 0; --step) spread(surface, bending);
+  std::vector<PrincipalCurvature> result(bending.size());
+  for (int f = 0; f < surface.mesh.face_count(); ++f) result[f] = principal(bending[f], face_basis(surface.mesh, f));
+  return result;
+}
+
+}  // namespace hybrid_quad
