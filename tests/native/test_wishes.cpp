@@ -102,7 +102,9 @@ TEST(FrameFieldGuides, FeaturesGoFirst) {
   options.guides.assign(mesh.face_count(), Vector3(std::sqrt(0.5), std::sqrt(0.5), 0));
   const FrameField field = solve_frame_field(surface, options, RunContext{});
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (mesh.is_boundary(h)) EXPECT_LT(degrees_between(field.du[h / 3], mesh.edge_vector(h).normalized(), mesh.normal(h / 3)), 1e-3);
+    if (mesh.is_boundary(h)) {
+      EXPECT_LT(degrees_between(field.du[h / 3], mesh.edge_vector(h).normalized(), mesh.normal(h / 3)), 1e-3);
+    }
 }
 
 TEST(FrameFieldCurvature, AxesTurnToThePrincipalDirections) {

@@ -111,7 +111,8 @@ class ComponentRemesher {
   /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked.
   Extraction extract_with_count(const FrameField& unit) {
     constexpr int kTries = 4;
-    constexpr double kTolerance = 0.035, kHopeless = 0.15;
+    constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
+    const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex index(mesh_, plan_.features.face_region);
     CountSearch search(plan_.quads);
     Extraction best;
@@ -119,16 +120,17 @@ class ComponentRemesher {
     for (int i = 0; i < kTries; ++i) {
       const bool last = i + 1 == kTries;
       Extraction current = extract_by_any_means(unit, search.next());
-      const auto count = [&] { return static_cast<double>(current.mesh.quads.size()); };
+      double count = static_cast<double>(current.mesh.quads.size());
       // What is as far off as that needs no improving, unless it is all there is.
-      if (search.error(count()) < kHopeless || (last && !any)) {
+      if (search.error(count) < kHopeless || (last && !any)) {
         if (options_.improve) improve(index, current);
-        current.count_error = search.error(count());
+        count = static_cast<double>(current.mesh.quads.size());
+        current.count_error = search.error(count);
         if (!any || std::tie(current.flawed, current.count_error) < std::tie(best.flawed, best.count_error)) best = std::move(current);
         any = true;
-        if (best.flawed == 0 && best.count_error < kTolerance) break;
+        if (best.flawed == 0 && best.count_error < tolerance) break;
       }
-      search.record(count());
+      search.record(count);
     }
     return best;
   }
