@@ -22,6 +22,39 @@ PeriodicSolver solver_named(const std::string& name) {
   throw py::value_error("solver must be 'multilevel' or 'eigen'");
 }
 
+/// \param planes  letters of x, y and z; "auto" for those about which the surface is symmetric
+SymmetryOptions symmetry_named(const std::string& planes) {
+  SymmetryOptions options;
+  if (planes == "auto") {
+    options.detect = true;
+    return options;
+  }
+  for (const char letter : planes) {
+    if (letter < 'x' || letter > 'z') throw py::value_error("symmetry must be 'auto' or letters of x, y and z");
+    options.planes |= plane(letter - 'x');
+  }
+  return options;
+}
+
+/// {"planes": "xz", "deviation_percent": {"x": {"max", "mean"}, ...}}; no deviation where no symmetry was asked for.
+py::dict dict_of_symmetry(const SymmetryRecord& record) {
+  std::string planes;
+  py::dict deviation;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string letter(1, "xyz"[axis]);
+    if (has_plane(record.planes, axis)) planes += letter;
+    if (!record.is_measured) continue;
+    py::dict of_plane;
+    of_plane["max"] = record.deviation[axis].largest;
+    of_plane["mean"] = record.deviation[axis].mean;
+    deviation[letter.c_str()] = of_plane;
+  }
+  py::dict result;
+  result["planes"] = planes;
+  result["deviation_percent"] = deviation;
+  return result;
+}
+
 py::dict dict_of_patches(const PatchRecord& patches) {
   py::dict result;
   result["count"] = patches.count;
@@ -75,6 +108,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["singular_area_fraction"] = report.singular_area_fraction;
   result["patches"] = dict_of_patches(report.patches);
   result["repairs"] = dict_of_repairs(report.repairs);
+  result["symmetry"] = dict_of_symmetry(report.symmetry);
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;
@@ -139,7 +173,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                double edge_length, std::optional<double> sharp_angle, const IntArray& sharp_edges,
                const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& density,
                const DoubleArray& vertex_frames, const DoubleArray& face_frames, double field_smoothness,
-               double adaptivity, double anisotropy, double size_fidelity, const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
+               double adaptivity, double anisotropy, double size_fidelity, const std::string& symmetry,
+               const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
                py::object cancel, py::object snapshot) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         RemeshOptions options;
@@ -157,6 +192,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.adaptivity = adaptivity;
         options.anisotropy = anisotropy;
         options.size_fidelity = size_fidelity;
+        options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), time_limit);
         try {
@@ -179,7 +215,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"),
       py::arg("vertex_guides"), py::arg("face_guides"), py::arg("density"), py::arg("vertex_frames"),
       py::arg("face_frames"), py::arg("field_smoothness"), py::arg("adaptivity"), py::arg("anisotropy"),
-      py::arg("size_fidelity"), py::arg("solver"),
+      py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),
       "Quad mesh, feature edges and report of one run, as a dict.");

@@ -23,6 +23,7 @@ def main() -> int:
     # Blender's own Python need not have pytest: scripts/test names a folder that does.
     sys.path[:0] = [path for path in os.environ.get("HQ_TEST_PACKAGES", "").split(os.pathsep) if path]
     sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", os.path.join(HERE, "..", "..", "addon")))
+    sys.path.append(os.path.join(HERE, ".."))  # support/
     import pytest
 
     # The repository's pytest options are for the tests that run outside Blender.

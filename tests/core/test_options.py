@@ -25,6 +25,12 @@ from hybrid_quad.core import native
         {"anisotropy": 0.5},
         {"anisotropy": math.inf},
         {"size_fidelity": 2.0},
+        {"symmetry": "xx"},
+        {"symmetry": "w"},
+        {"symmetry": "autox"},
+        {"symmetry_center": "middle"},
+        {"symmetry_center": (0.0, math.nan, 0.0)},
+        {"symmetry_center": (0.0, 1.0)},
         {"solver": "guess"},
         {"seed": -1},
         {"threads": -1},
@@ -49,4 +55,5 @@ def test_native_arguments_carry_every_option():
     assert native["edge_length"] == 0.0
     assert native["sharp_angle"] is None
     assert native["threads"] >= 1
-    assert set(native) == set(RemeshOptions.__dataclass_fields__)
+    # The centre is no argument: the points are moved there.
+    assert set(native) == set(RemeshOptions.__dataclass_fields__) - {"symmetry_center"}

@@ -16,6 +16,7 @@ from hybrid_quad.cli.main import main
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
+from support.mirroring import assert_mirrored
 
 
 def write_obj(path, vertices, faces):
@@ -218,3 +219,21 @@ def test_guides_that_cannot_be_taken_are_wrong_usage(tmp_path, content, more):
     mesh = write_obj(tmp_path / "in.obj", *surfaces.torus())
     assert main(["remesh", mesh, str(out), "--quiet", "--guides", str(lines), *more]) == exit_codes.WRONG_USAGE
     assert not out.exists()
+
+
+def test_symmetry_is_made_and_told(tmp_path, torus, capsys):
+    out, report = tmp_path / "out.obj", tmp_path / "r.json"
+    arguments = ["remesh", torus, str(out), "--quads", "300", "--report", str(report)]
+    assert main([*arguments, "--symmetry", "xz"]) == exit_codes.OK
+    said = capsys.readouterr().err
+    assert "% (used), y " in said
+    assert "% (used)\n" in said
+    vertices, polygons = read_mesh(out)
+    assert_mirrored(vertices, polygons.vertices.reshape(-1, 4), 0)
+    assert_mirrored(vertices, polygons.vertices.reshape(-1, 4), 2)
+    assert json.loads(report.read_text())["symmetry"]["planes"] == "xz"
+    assert main([*arguments, "--symmetry", "auto", "--symmetry-center", "bounds"]) == exit_codes.OK
+    assert json.loads(report.read_text())["symmetry"]["planes"] == "xyz"
+    assert main([*arguments, "--symmetry", "x", "--symmetry-center", "9,0,0"]) == exit_codes.CANNOT_REMESH
+    assert main([*arguments, "--symmetry", "w"]) == exit_codes.WRONG_USAGE
+    assert main([*arguments, "--symmetry", "x", "--symmetry-center", "middle"]) == exit_codes.WRONG_USAGE

@@ -14,11 +14,11 @@ from typing import Any
 import bpy
 
 from ..cli import exit_codes
-from ..cli.messages import describe_defect
+from ..cli.messages import describe_defect, describe_symmetry
 from ..core import report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
-from ..core.options import RemeshOptions
+from ..core.options import AXES, RemeshOptions
 from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
@@ -128,6 +128,12 @@ def _parser() -> argparse.ArgumentParser:
         "--field-smoothness", type=_share, metavar="S", help="0: follow detail; 1: fewest singularities"
     )
     parser.add_argument("--anisotropy", type=_stretch, metavar="R", help="longest ratio of a quad's sides (1: squares)")
+    parser.add_argument(
+        "--symmetry",
+        metavar="xyz|auto|none",
+        type=_symmetry,
+        help="mirror along these axes of the object, or along those along which it is symmetric",
+    )
     place = parser.add_mutually_exclusive_group()
     place.add_argument(
         "--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object"
@@ -180,6 +186,12 @@ def _stretch(text: str) -> float:
     return value
 
 
+def _symmetry(text: str) -> str:
+    if text in ("auto", "none") or (text and len(set(text) & set(AXES)) == len(text)):
+        return text
+    raise argparse.ArgumentTypeError(f'{text} is neither "auto" nor "none" nor letters of "{AXES}"')
+
+
 def _find_object(name: str) -> bpy.types.Object:
     obj = bpy.context.view_layer.objects.get(name)
     if obj is None:
@@ -222,6 +234,10 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
         settings.guide_object = _named(bpy.data.objects, options.guide_object, "object")
     if options.guide_collection is not None:
         settings.guide_collection = _named(bpy.data.collections, options.guide_collection, "collection")
+    if options.symmetry is not None:
+        settings.use_auto_symmetry = options.symmetry == "auto"
+        if options.symmetry != "auto":
+            settings.symmetry_axes = [letter in options.symmetry.replace("none", "") for letter in AXES]
     if options.result_mode is not None:
         settings.result_mode = options.result_mode
 
@@ -310,6 +326,8 @@ def _printer(quiet: bool) -> Callable[[str, float], None] | None:
 def _summary(options: argparse.Namespace, record: dict[str, Any]) -> str:
     lines = [f"hybrid_quad: repaired {describe_defect(defect)}" for defect in record["defects"]]
     lines += [f"hybrid_quad: warning: {warning}" for warning in record["warnings"]]
+    if record["symmetry"]["deviation_percent"]:
+        lines.append(f"hybrid_quad: {describe_symmetry(record['symmetry'])}")
     quality = record["scaled_jacobian"]
     lines.append(
         f'hybrid_quad: {options.output}: "{record["object"]}" has {record["quads"]} quads, '

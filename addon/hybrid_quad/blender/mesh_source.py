@@ -24,11 +24,12 @@ class MeshSource:
     Attributes
     ----------
     linear : (3, 3) float64
-        Object space to world space, without the translation.
+        Object space to the run's space: to world space, without the translation, or scaled along the object's axes only.
     vertices : (n, 3) float64
-        In world space, with the object's origin in the origin, so that quads come out even under any scale.
+        In the run's space: in the size of the scene, so that quads come out even under any scale, with the object's
+        origin in the origin.
     polygons : Polygons
-        Wound as they look in the world: a mirrored object's polygons are reversed.
+        Wound as they look in the run's space: where that is mirrored, the polygons are reversed.
     edges : (k, 2) int32
     edge_values : EdgeValues
         What each edge carries.
@@ -63,7 +64,7 @@ class MeshSource:
 
     @property
     def is_mirrored(self) -> bool:
-        """Whether the object's transform turns the surface inside out."""
+        """Whether the way to the run's space turns the surface inside out."""
         return bool(np.linalg.det(self.linear) < 0)
 
     def to_object_space(self, points: FloatArray) -> FloatArray:
@@ -71,8 +72,14 @@ class MeshSource:
         return np.linalg.solve(self.linear, points.T).T
 
 
-def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshSource:
+def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, along_axes: bool = False) -> MeshSource:
     """Copies an object's evaluated mesh, modifiers applied.
+
+    Parameters
+    ----------
+    along_axes : bool
+        Keep the object's axes as the axes of the run's space, as mirror planes need it: the mesh is scaled along them as
+        in the scene, but not turned, mirrored or sheared.
 
     Raises
     ------
@@ -89,6 +96,8 @@ def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshSo
     scales = np.linalg.svd(linear, compute_uv=False)
     if not np.isfinite(linear).all() or scales[2] <= _FLATTEST * scales[0]:
         raise InputError("flat_scale", f'"{obj.name}" is scaled to zero along an axis, so it has no surface to remesh')
+    if along_axes:
+        linear = np.diag(np.linalg.norm(linear, axis=0))
     mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
     try:
         if not mesh.polygons:

@@ -149,6 +149,25 @@ class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "anisotropy")
 
 
+class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
+    """Mirror planes."""
+
+    bl_label = "Symmetry"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        row = layout.row(heading="Mirror", align=True)
+        axes = row.row(align=True)
+        axes.active = not settings.use_auto_symmetry
+        for index, letter in enumerate("XYZ"):
+            axes.prop(settings, "symmetry_axes", index=index, text=letter, toggle=True)
+        row.prop(settings, "use_auto_symmetry", toggle=True)
+
+
 class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
     """What the latest run of the active object gave."""
 
@@ -187,7 +206,17 @@ def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Scaled Jacobian, mean", _number(quality.get("mean"))),
         ("Scaled Jacobian, worst", _number(quality.get("min"))),
         ("Largest distance", f"{_number(report.get('hausdorff_percent'))} %"),
+        *_symmetry_rows(report.get("symmetry", {})),
         ("Time", f"{sum(stage.get('seconds', 0.0) for stage in report.get('stages', ())):.1f} s"),
+    ]
+
+
+def _symmetry_rows(symmetry: dict[str, Any]) -> list[tuple[str, str]]:
+    """How far the object is from symmetric along each axis, and along which it was mirrored."""
+    used = symmetry.get("planes", "")
+    return [
+        (f"Deviation {axis.upper()}{', mirrored' if axis in used else ''}", f"{_number(deviation.get('max'))} %")
+        for axis, deviation in symmetry.get("deviation_percent", {}).items()
     ]
 
 
@@ -213,5 +242,6 @@ CLASSES = (
     VIEW3D_PT_hybrid_quad_feature_sources,
     VIEW3D_PT_hybrid_quad_guides,
     VIEW3D_PT_hybrid_quad_flow,
+    VIEW3D_PT_hybrid_quad_symmetry,
     VIEW3D_PT_hybrid_quad_report,
 )

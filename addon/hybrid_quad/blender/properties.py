@@ -6,7 +6,7 @@ import math
 
 import bpy
 
-from ..core.options import MOST_QUADS, RemeshOptions
+from ..core.options import AXES, MOST_QUADS, RemeshOptions
 from .edge_marks import SOURCES
 
 TARGET_MODES = (
@@ -188,12 +188,33 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         soft_max=4.0,
         max=10.0,
     )
+    symmetry_axes: bpy.props.BoolVectorProperty(
+        name="Mirror",
+        description="Make the result exactly symmetric along these axes of the object, about its origin. The positive "
+        "side is kept and mirrored, with a loop of edges between",
+        size=3,
+        subtype="XYZ",
+        default=(False, False, False),
+    )
+    use_auto_symmetry: bpy.props.BoolProperty(
+        name="Auto",
+        description="Mirror along those axes along which the object itself is symmetric. The last result says how far it "
+        "is from that",
+        default=False,
+    )
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"
     )
     last_report: bpy.props.StringProperty(
         name="Last Report", description="Report of the latest run as JSON", options={"HIDDEN"}
     )
+
+    @property
+    def symmetry(self) -> str:
+        """The option ``symmetry`` of a run."""
+        if self.use_auto_symmetry:
+            return "auto"
+        return "".join(letter for letter, is_used in zip(AXES, self.symmetry_axes, strict=True) if is_used)
 
 
 CLASSES = (HybridQuadSettings,)

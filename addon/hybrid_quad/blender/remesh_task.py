@@ -126,12 +126,13 @@ def prepare_task(
         quads=settings.quads,
         edge_length=settings.edge_length if settings.target_mode == "LENGTH" else None,
         sharp_angle=round(math.degrees(settings.sharp_angle), 4) if settings.use_sharp_angle else None,
+        symmetry=settings.symmetry,
         seed=seed,
         threads=threads,
         time_limit=time_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
-    source = read_source(obj, depsgraph)
+    source = read_source(obj, depsgraph, along_axes=bool(options.symmetry))
     return RemeshTask(
         source,
         options,
@@ -149,12 +150,19 @@ def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Dep
     guiding, kept = edge_marks.marks_guiding(settings), edge_marks.marks_asked(settings)
     soft = ((source.marks & guiding) != 0) & ((source.marks & kept) == 0)
     strokes = strokes_of_segments(source.vertices[source.edges[soft]], settings.guide_marks_strength)
-    origin = np.array(obj.evaluated_get(depsgraph).matrix_world.translation, np.float64)
+    matrix = obj.evaluated_get(depsgraph).matrix_world
+    origin, linear = np.array(matrix.translation, np.float64), np.array(matrix.to_3x3(), np.float64)
+
+    def from_world(line: FloatArray) -> FloatArray:
+        if np.array_equal(linear, source.linear):
+            return line - origin
+        return np.linalg.solve(linear, (line - origin).T).T @ source.linear.T
+
     lines = guide_lines.lines_of_settings(settings, depsgraph)
-    strokes += [Stroke(line - origin, settings.guide_objects_strength) for line in lines]
+    strokes += [Stroke(from_world(line), settings.guide_objects_strength) for line in lines]
     if settings.use_guide_annotations:
         lines = guide_lines.lines_of_annotations(depsgraph.scene)
-        strokes += [Stroke(line - origin, settings.guide_annotations_strength) for line in lines]
+        strokes += [Stroke(from_world(line), settings.guide_annotations_strength) for line in lines]
     return tuple(stroke for stroke in strokes if stroke.strength > 0)
 
 

@@ -33,6 +33,15 @@ def describe_elements(error: InputError) -> str:
     return f" ({text}, counted from 0)" if text else ""
 
 
+def describe_symmetry(symmetry: dict[str, Any]) -> str:
+    """One line for the report's ``symmetry``: the planes used, and how symmetric the surface is about each."""
+    parts = [
+        f"{axis} {deviation['max']:.3g} %{' (used)' if axis in symmetry['planes'] else ''}"
+        for axis, deviation in symmetry["deviation_percent"].items()
+    ]
+    return f"deviation from symmetry, of the diagonal: {', '.join(parts)}"
+
+
 def describe_defect(defect: dict[str, Any], verdict: str = "") -> str:
     """One line for a defect in its JSON form: what, where, and what becomes of it."""
     elements = defect["elements"]

@@ -14,12 +14,12 @@ from .. import __version__
 from ..core import mesh_io, report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_arrays import FloatArray, Polygons, surface_area
-from ..core.options import SOLVERS, RemeshOptions
+from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
 from ..core.remesh import RemeshResult, remesh_with_options
 from ..core.strokes import Stroke, guides_from_strokes
 from ..core.validation import violations
 from . import exit_codes
-from .messages import describe_defect, say
+from .messages import describe_defect, describe_symmetry, say
 from .progress_bar import ProgressBar
 
 
@@ -91,6 +91,19 @@ def add_to(commands: Any) -> None:
         "--frames", metavar="FILE", help="six numbers for each vertex of IN: two edge vectors in edge lengths; 0: free"
     )
     parser.add_argument(
+        "--symmetry",
+        default="",
+        metavar="xyz|auto",
+        help="make the result exactly symmetric: letters of the directions in which to mirror, or auto for those in which "
+        "the mesh itself is symmetric",
+    )
+    parser.add_argument(
+        "--symmetry-center",
+        default="origin",
+        metavar="origin|bounds|X,Y,Z",
+        help="where the mirror planes meet: the origin (default), the middle of the bounding box, or a point",
+    )
+    parser.add_argument(
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
@@ -123,6 +136,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.quiet:
         for defect in result.report["defects"]:
             say(f"repaired {describe_defect(defect)}")
+        if result.report["symmetry"]["deviation_percent"]:
+            say(describe_symmetry(result.report["symmetry"]))
         for warning in result.report["warnings"]:
             say(f"warning: {warning}")
         seconds = time.monotonic() - started
@@ -149,6 +164,8 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
             adaptivity=arguments.adaptivity,
             anisotropy=arguments.anisotropy,
             size_fidelity=arguments.size_fidelity,
+            symmetry=arguments.symmetry,
+            symmetry_center=_center(arguments.symmetry_center),
             solver=arguments.solver,
             seed=arguments.seed,
             threads=arguments.threads,
@@ -156,6 +173,16 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
         )
     except ValueError as error:
         raise UsageProblem(str(error)) from error
+
+
+def _center(text: str) -> str | tuple[float, float, float]:
+    if text in SYMMETRY_CENTERS:
+        return text
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f'symmetry_center must be "origin", "bounds" or X,Y,Z, not {text!r}') from None
+    return x, y, z
 
 
 def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: float) -> RemeshResult:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 SOLVERS = ("multilevel", "eigen")
+AXES = "xyz"
+SYMMETRY_CENTERS = ("origin", "bounds")
 
 # More would take more memory than a machine has, and is most often a length in the wrong unit.
 MOST_QUADS = 5_000_000
@@ -38,6 +40,11 @@ class RemeshOptions:
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
         Where sizes vary (`adaptivity`, density, frames): 0 keeps irregular vertices few, 1 keeps the asked sizes.
+    symmetry : str
+        Planes about which the result is to be symmetric, exactly: letters of ``"xyz"``, each the direction in which the
+        plane mirrors. ``"auto"``: those about which the surface itself is symmetric. ``""``: none.
+    symmetry_center : {"origin", "bounds"} or (float, float, float)
+        Where the planes meet: the origin, the middle of the bounding box, or a point.
     solver : {"multilevel", "eigen"}
         How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
     seed : int
@@ -55,6 +62,8 @@ class RemeshOptions:
     adaptivity: float = 0.0
     anisotropy: float = 1.0
     size_fidelity: float = 0.5
+    symmetry: str = ""
+    symmetry_center: str | tuple[float, float, float] = "origin"
     solver: str = "multilevel"
     seed: int = 0
     threads: int = 0
@@ -80,6 +89,17 @@ class RemeshOptions:
             1 <= self.anisotropy <= MOST_ANISOTROPY,
             f"anisotropy must be between 1 and {MOST_ANISOTROPY}, not {self.anisotropy!r}",
         )
+        _require(
+            isinstance(self.symmetry, str)
+            and (self.symmetry == "auto" or len(set(self.symmetry) & set(AXES)) == len(self.symmetry)),
+            f'symmetry must be "auto" or different letters of "{AXES}", not {self.symmetry!r}',
+        )
+        _require(
+            self.symmetry_center in SYMMETRY_CENTERS
+            if isinstance(self.symmetry_center, str)
+            else len(self.symmetry_center) == 3 and all(math.isfinite(value) for value in self.symmetry_center),
+            f'symmetry_center must be "origin", "bounds" or a point, not {self.symmetry_center!r}',
+        )
         _require(self.solver in SOLVERS, f"solver must be one of {', '.join(SOLVERS)}, not {self.solver!r}")
         _require(
             _is_integer(self.seed) and 0 <= self.seed < 2**64, f"seed must be a whole number >= 0, not {self.seed!r}"
@@ -103,6 +123,7 @@ class RemeshOptions:
             "adaptivity": float(self.adaptivity),
             "anisotropy": float(self.anisotropy),
             "size_fidelity": float(self.size_fidelity),
+            "symmetry": self.symmetry,
             "solver": self.solver,
             "seed": int(self.seed),
             "threads": int(self.threads) or usable_threads(),

@@ -76,6 +76,8 @@ def remesh(
     adaptivity: float = 0.0,
     anisotropy: float = 1.0,
     size_fidelity: float = 0.5,
+    symmetry: str = "",
+    symmetry_center: str | tuple[float, float, float] = "origin",
     solver: str = "multilevel",
     seed: int = 0,
     threads: int = 0,
@@ -123,6 +125,13 @@ def remesh(
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
         Where sizes vary: 0 keeps irregular vertices few, 1 keeps the asked sizes.
+    symmetry : str
+        Planes about which the result is symmetric, exactly: letters of ``"xyz"``, each the direction in which the plane
+        mirrors. The positive side is kept, however symmetric the surface is; the report's ``symmetry`` says how far it is
+        from that. ``"auto"``: the planes about which the surface itself is symmetric. ``""``: none.
+    symmetry_center : {"origin", "bounds"} or (float, float, float)
+        Where the planes meet. Coordinates are equal bit for bit up to the sign about the origin; about another point
+        they are rounded when it is added.
     solver : {"multilevel", "eigen"}
         How the periodic field is found: coarse to fine, or, slower, by the paper's eigenvector and Gauss-Newton steps.
     seed : int
@@ -164,6 +173,8 @@ def remesh(
         adaptivity=adaptivity,
         anisotropy=anisotropy,
         size_fidelity=size_fidelity,
+        symmetry=symmetry,
+        symmetry_center=symmetry_center,
         solver=solver,
         seed=seed,
         threads=threads,
@@ -205,8 +216,9 @@ def remesh_with_options(
     require_edges(marked, polygons, len(points))
     wishes = native_wishes(guides, density, frames, len(points), len(polygons.sizes))
     _require_enough_length(points, polygons, options, wishes["density"])
+    center = _symmetry_center(points, options)
     result = native.load().remesh(
-        points,
+        points if center is None else points - center,
         polygons.sizes,
         polygons.vertices,
         sharp_edges=marked,
@@ -216,8 +228,19 @@ def remesh_with_options(
         snapshot=_snapshot_receiver(dump_stages, on_snapshot),
         **options.for_native(),
     )
+    if center is not None:
+        result["vertices"] += center
     result["report"] = report.finished(result["report"], options, __version__)
     return RemeshResult(**result)
+
+
+def _symmetry_center(points: FloatArray, options: RemeshOptions) -> FloatArray | None:
+    """What is subtracted from the points so that the mirror planes go through the origin, if anything."""
+    if not options.symmetry or options.symmetry_center == "origin" or not len(points):
+        return None
+    if options.symmetry_center == "bounds":
+        return 0.5 * (points.min(axis=0) + points.max(axis=0))
+    return np.array(options.symmetry_center, np.float64)
 
 
 def _require_enough_length(

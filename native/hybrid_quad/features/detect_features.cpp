@@ -370,7 +370,7 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
     detector.drop_noise();
   }
   context.checkpoint(0.7);
-  return trace_features(mesh, detector.result(), options.corner_angle);
+  return trace_features(mesh, detector.result(), options.corner_angle, options.corners);
 }
 
 }  // namespace hybrid_quad

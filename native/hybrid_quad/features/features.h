@@ -34,6 +34,7 @@ struct FeatureOptions {
   double minimum_length = 0.0;
   double corner_angle = 100.0;   ///< degrees between consecutive edges of a curve below which its vertex is a corner
   std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped
+  std::vector<int> corners;      ///< vertices that are corners in any case, where a feature passes
 };
 
 /// Boundary edges, edges by angle and marked edges, traced into curves.
@@ -41,7 +42,9 @@ struct FeatureOptions {
 FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& options, const RunContext& context);
 
 /// Curves, corners and regions of a given set of feature half-edges. \param is_feature 3 #F, symmetric; boundary is added
-FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle);
+/// \param corners  vertices that are corners in any case, where a feature passes
+FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle,
+                            const std::vector<int>& corners = {});
 
 std::vector<std::string> violations_of(const FeatureGraph& features, const TriangleMesh& mesh);
 

@@ -102,7 +102,8 @@ void flood_regions(const TriangleMesh& mesh, FeatureGraph& graph) {
 
 }  // namespace
 
-FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle) {
+FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle,
+                            const std::vector<int>& corners) {
   std::vector<char> marked = is_feature;
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (mesh.is_boundary(h)) marked[h] = 1;
@@ -114,6 +115,7 @@ FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& i
   graph.on_feature.assign(mesh.vertex_count(), 0);
   graph.face_region.assign(mesh.face_count(), -1);
   mark_corners(mesh, in, corner_angle, graph);
+  for (const int v : corners) graph.is_corner[v] = graph.on_feature[v];
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (graph.is_corner[v])
       for (int i = in.first[v]; i < in.first[v + 1]; ++i)

@@ -17,7 +17,7 @@ struct QuadMesh {
   std::vector<std::array<int, 4>> quads;
   std::vector<VertexKind> kind;  ///< #V
   std::vector<int>
-      anchor;  ///< #V: kFree: region (FeatureGraph::face_region); kCurve: curve id; kCorner: input vertex id
+      anchor;  ///< #V: kFree: region (FeatureGraph::face_region); kCurve: curve id; kCorner: input vertex id (-1: a mirror plane made it)
   struct FeatureEdge {
     int a, b, curve;  ///< vertices in the direction of the curve
   };

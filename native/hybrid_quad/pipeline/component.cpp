@@ -12,6 +12,7 @@
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
+#include "hybrid_quad/symmetry/symmetry.h"
 
 namespace hybrid_quad {
 
@@ -124,6 +125,7 @@ class ComponentRemesher {
       // What is as far off as that needs no improving, unless it is all there is.
       if (search.error(count) < kHopeless || (last && !any)) {
         if (options_.improve) improve(index, current);
+        make_mirrorable(index, current.mesh);
         count = static_cast<double>(current.mesh.quads.size());
         current.count_error = search.error(count);
         if (!any || std::tie(current.flawed, current.count_error) < std::tie(best.flawed, best.count_error)) best = std::move(current);
@@ -200,6 +202,7 @@ class ComponentRemesher {
       out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
       out.repairs.split_polychords = repair.split_polychords;
       out.repairs.opened_straight_quads = open_straight_quads(complex);
+      open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);
       order_feature_edges(mesh, mesh_, plan_.features);
       return mesh;
@@ -240,6 +243,24 @@ class ComponentRemesher {
       extraction.flawed = report.flawed_after;
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
+  }
+
+  /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
+  void make_mirrorable(const SurfaceIndex& index, QuadMesh& mesh) {
+    if (options_.symmetry.planes == 0) return;
+    if (open_seams(mesh, plan_.curve_planes) > 0) {
+      order_feature_edges(mesh, mesh_, plan_.features);
+      ImproveOptions o;
+      o.edit_connectivity = false;
+      o.fit = options_.fit;
+      o.target_length = length_;
+      o.usual_size = doubtful_size_;
+      if (options_.improve)
+        improve_quads(mesh, mesh_, plan_.features, index, o, context_.in_stage("improve", 0.97, 0.97), &whole_);
+      // What mends flawed quads changes connectivity in any case; there is no third round.
+      if (open_seams(mesh, plan_.curve_planes) > 0) order_feature_edges(mesh, mesh_, plan_.features);
+    }
+    keep_clear_of_planes(mesh, options_.symmetry.planes);
   }
 
   const ComponentPlan& plan_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/pipeline/symmetric_domain.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
@@ -60,29 +61,23 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Pairs of input vertices as pairs of a component's vertices (an input vertex may have been split into several).
-std::vector<std::array<int, 2>> marked_in(const Component& component, const BuiltMesh& built,
-                                          const std::vector<std::array<int, 2>>& marked) {
-  std::vector<std::array<int, 2>> sorted, out;
-  for (const auto& m : marked) sorted.push_back({std::min(m[0], m[1]), std::max(m[0], m[1])});
-  std::sort(sorted.begin(), sorted.end());
-  for (int h = 0; h < component.mesh.halfedge_count(); ++h) {
-    if (component.mesh.opposite(h) > h) continue;
-    const int a = component.mesh.from(h), b = component.mesh.to(h);
-    const int ia = built.input_vertex[component.vertex[a]], ib = built.input_vertex[component.vertex[b]];
-    if (std::binary_search(sorted.begin(), sorted.end(), std::array<int, 2>{std::min(ia, ib), std::max(ia, ib)}))
-      out.push_back({a, b});
-  }
+/// Marked half-edges of the whole mesh as pairs of a component's vertices.
+std::vector<std::array<int, 2>> marked_in(const Component& component, const std::vector<char>& is_marked) {
+  std::vector<std::array<int, 2>> out;
+  for (int h = 0; h < component.mesh.halfedge_count(); ++h)
+    if (component.mesh.opposite(h) < h && is_marked[3 * component.face[h / 3] + h % 3])
+      out.push_back({component.mesh.from(h), component.mesh.to(h)});
   return out;
 }
 
-void append(RemeshResult& result, const ComponentResult& component, const std::vector<int>& input_vertex) {
+/// \param m  the component's quads, mirror images included  \param images  how many of these there are
+void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& component, const std::vector<int>& input_vertex,
+            int images) {
   const int base = static_cast<int>(result.mesh.positions.size());
-  const QuadMesh& m = component.mesh;
   result.mesh.positions.insert(result.mesh.positions.end(), m.positions.begin(), m.positions.end());
   result.mesh.kind.insert(result.mesh.kind.end(), m.kind.begin(), m.kind.end());
   for (std::size_t v = 0; v < m.anchor.size(); ++v)
-    result.mesh.anchor.push_back(m.kind[v] == VertexKind::kCorner ? input_vertex[m.anchor[v]] : m.anchor[v]);
+    result.mesh.anchor.push_back(m.kind[v] == VertexKind::kCorner && m.anchor[v] >= 0 ? input_vertex[m.anchor[v]] : m.anchor[v]);
   for (auto q : m.quads) {
     for (int& v : q) v += base;
     result.mesh.quads.push_back(q);
@@ -90,15 +85,15 @@ void append(RemeshResult& result, const ComponentResult& component, const std::v
   for (auto e : m.feature_edges) result.mesh.feature_edges.push_back({e.a + base, e.b + base, e.curve});
   RemeshReport& r = result.report;
   r.working_faces += component.working_faces;
-  r.field_singularities += component.field_singularities;
-  r.dislocations += component.dislocations;
-  r.dislocations_found += component.dislocations_found;
-  r.repairs += component.repairs;
-  r.flawed_quads += component.flawed_quads;
+  r.field_singularities += images * component.field_singularities;
+  r.dislocations += images * component.dislocations;
+  r.dislocations_found += images * component.dislocations_found;
+  for (int i = 0; i < images; ++i) r.repairs += component.repairs;
+  r.flawed_quads += images * component.flawed_quads;
   r.extra_passes += component.passes - 1;
-  r.patches.count += component.patches.count;
-  r.patches.morse_smale += component.patches.morse_smale;
-  r.patches.combinatorial += component.patches.combinatorial;
+  r.patches.count += images * component.patches.count;
+  r.patches.morse_smale += images * component.patches.morse_smale;
+  r.patches.combinatorial += images * component.patches.combinatorial;
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
 }
 
@@ -147,27 +142,33 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
 
-  const std::vector<Component> components = split_components(built.mesh);
-  report.components = static_cast<int>(components.size());
-  const double area = built.mesh.total_area();
-  const double even_length = options.edge_length > 0 ? options.edge_length : std::sqrt(area / std::max(1, options.quads));
+  if (options.symmetry.planes != 0 || options.symmetry.detect)
+    report.symmetry = clock.measure("symmetry", [&] {
+      return settle_symmetry(options.symmetry, built.mesh, context.in_stage("symmetry", 0.02, 0.02));
+    });
+  const int images = image_count(report.symmetry.planes);
+  const RemeshDomain domain = domain_of(built, options, report.symmetry.planes);
+  const std::vector<Component> components = split_components(domain.mesh);
+  report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());
+  const double area = domain.mesh.total_area();
+  const double even_length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * area / std::max(1, options.quads));
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
+  std::vector<std::vector<std::array<int, 2>>> marked;
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
-    std::vector<std::vector<std::array<int, 2>>> marked;
     double weighted_area = 0;  // at density 1
     for (const Component& c : components) {
-      marked.push_back(marked_in(c, built, options.marked_edges));
-      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, built, marked.back(), options, even_length, plan_context));
+      marked.push_back(marked_in(c, domain.is_marked));
+      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked.back(), domain.options, even_length, plan_context));
       weighted_area += area_by_density(c.mesh, wishes.back().density);
     }
-    const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(weighted_area / std::max(1, options.quads));
-    wanted = weighted_area / (length * length);
+    const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * weighted_area / std::max(1, options.quads));
+    wanted = images * weighted_area / (length * length);
     for (std::size_t i = 0; i < components.size(); ++i)
-      plans.push_back(plan_component(components[i].mesh, length, marked[i], wishes[i], options, plan_context));
-    if (!(options.edge_length > 0)) balance_plans(plans, options.quads);
+      plans.push_back(plan_component(components[i].mesh, length, marked[i], wishes[i], domain.options, plan_context));
+    if (!(options.edge_length > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
   });
 
   const SurfaceIndex whole(built.mesh, {});
@@ -178,10 +179,10 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], whole, wishes[i], options, clock, part_context));
+    parts.push_back(remesh_component(plans[i], whole, wishes[i], domain.options, clock, part_context));
     std::vector<int> input_vertex;
-    for (const int v : components[i].vertex) input_vertex.push_back(built.input_vertex[v]);
-    append(result, parts.back(), input_vertex);
+    for (const int v : components[i].vertex) input_vertex.push_back(domain.input_vertex[v]);
+    append(result, whole_of(parts.back(), plans[i], components[i].mesh, marked[i], domain.options), parts.back(), input_vertex, images);
     singular_area += parts.back().singular_area;
     combinatorial_area += parts.back().combinatorial_area;
     done += share;
@@ -195,6 +196,11 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
                               ": features or small parts need another number");
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
+  if (images > 1) {
+    for (std::string& warning : symmetry_warnings(domain, built.mesh, result.mesh)) report.warnings.push_back(std::move(warning));
+    const std::vector<std::string> violations = violations_of(result.mesh);
+    if (!violations.empty()) throw InternalError("symmetry", violations.front());
+  }
   clock.measure("quality", [&] {
     measure_quality(result, plans, parts, whole, context.in_stage("quality", 0.97, 1.0));
   });

@@ -8,8 +8,16 @@
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/periodic_field/periodic_field.h"
+#include "hybrid_quad/symmetry/symmetry.h"
 
 namespace hybrid_quad {
+
+/// Which mirror planes through the origin the result is to be symmetric about.
+struct SymmetryOptions {
+  PlaneSet planes = 0;      ///< used however symmetric the surface is; the positive side is kept
+  bool detect = false;      ///< use also those about which the surface is symmetric
+  double tolerance = 0.25;  ///< largest deviation that counts as symmetric, in percent of the diagonal
+};
 
 struct RemeshOptions {
   int quads = 5000;                ///< asked number of quads (ignored where edge_length > 0)
@@ -32,6 +40,7 @@ struct RemeshOptions {
   PeriodicSolver solver = PeriodicSolver::kMultilevel;
   bool improve = true;
   bool fit = true;                 ///< let free vertices leave the surface a little so that the quads' faces lie nearer to it
+  SymmetryOptions symmetry;
 };
 
 struct StageRecord {
@@ -63,6 +72,13 @@ struct RepairRecord {
   RepairRecord& operator+=(const RepairRecord& other);
 };
 
+/// The mirror planes that were used; the deviation of all three where any were asked for.
+struct SymmetryRecord {
+  PlaneSet planes = 0;
+  bool is_measured = false;
+  std::array<PlaneDeviation, 3> deviation;
+};
+
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
@@ -78,6 +94,7 @@ struct RemeshReport {
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features
+  SymmetryRecord symmetry;
   std::vector<StageRecord> stages;       ///< summed over components and passes
   std::vector<std::string> warnings;
   std::vector<Defect> defects;           ///< of the input, repaired on the way

@@ -57,7 +57,9 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
   plan.mesh = std::move(fine.mesh);
   FeatureOptions features = feature_options(options, plan.length);
   features.marked_edges = std::move(fine.marked_edges);
+  features.corners = seam_ends(plan.mesh, options.symmetry.planes);
   plan.features = detect_features(plan.mesh, features, context);
+  plan.curve_planes = seam_planes(plan.mesh, plan.features, options.symmetry.planes);
   const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < density.size(); ++v) plan.unlimited[v] = plan.length / density[v];

@@ -14,6 +14,7 @@ namespace hybrid_quad {
 struct ComponentPlan {
   TriangleMesh mesh;            ///< the component with long edges halved: the same surface, old vertices first
   FeatureGraph features;
+  std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
   double length = 0;            ///< asked edge length at density 1, where nothing limits it (scene units)
   std::vector<double> unlimited;  ///< #V: asked edge length where nothing limits it
   std::vector<double> target;   ///< #V: asked edge length

@@ -274,6 +274,11 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
   return distance;
 }
 
+DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex& to, const RunContext& context, int samples) {
+  const Tally tally = one_sided_distance(from, to, samples, context);
+  return {tally.largest, tally.sum};
+}
+
 double feature_distance(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                         const RunContext& context) {
   const double diagonal = input.diagonal();

@@ -50,6 +50,14 @@ struct SurfaceDistance {
 SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context,
                                  int samples = 40000);
 
+/// How far one surface is from another, in scene units: from evenly spread samples and the vertices. The same for any
+/// number of threads.
+struct DirectedDistance {
+  double largest = 0, mean = 0;
+};
+DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex& to, const RunContext& context,
+                                   int samples = 20000);
+
 /// Largest distance from the input's feature curves to the quads' feature edges, in percent of the diagonal; 0 without
 /// feature curves, 100 where there are curves but no feature edges.
 double feature_distance(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,

@@ -1,0 +1,110 @@
+#include "hybrid_quad/pipeline/symmetric_domain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hybrid_quad/sizing/asked_lengths.h"
+
+namespace hybrid_quad {
+
+SymmetryRecord settle_symmetry(const SymmetryOptions& options, const TriangleMesh& mesh, const RunContext& context) {
+  SymmetryRecord record;
+  record.is_measured = true;
+  record.deviation = plane_deviations(mesh, context);
+  record.planes = options.planes;
+  for (int axis = 0; axis < 3; ++axis)
+    if (options.detect && record.deviation[axis].largest <= options.tolerance) record.planes |= plane(axis);
+  return record;
+}
+
+namespace {
+
+/// 3 #F: on a marked edge. A pair of polygon-soup vertices may have become several edges.
+std::vector<char> marked_halfedges(const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked) {
+  std::vector<std::array<int, 2>> sorted;
+  for (const auto& m : marked) sorted.push_back({std::min(m[0], m[1]), std::max(m[0], m[1])});
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<char> is_marked(built.mesh.halfedge_count(), 0);
+  for (int h = 0; h < built.mesh.halfedge_count() && !sorted.empty(); ++h) {
+    const int a = built.input_vertex[built.mesh.from(h)], b = built.input_vertex[built.mesh.to(h)];
+    is_marked[h] = std::binary_search(sorted.begin(), sorted.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)});
+  }
+  return is_marked;
+}
+
+int nearest_source(const PositivePart::Origin& origin) {
+  return origin.vertex[std::max_element(origin.weight.begin(), origin.weight.end()) - origin.weight.begin()];
+}
+
+template <class Value>
+void take_nearest(const PositivePart& part, const BuiltMesh& built, std::vector<Value>& values) {
+  if (values.empty()) return;
+  std::vector<Value> taken;
+  taken.reserve(part.vertex.size());
+  for (const PositivePart::Origin& origin : part.vertex) taken.push_back(values[built.input_vertex[nearest_source(origin)]]);
+  values = std::move(taken);
+}
+
+/// Lengths are between two others as their logarithms are.
+void take_between(const PositivePart& part, const BuiltMesh& built, std::vector<double>& density) {
+  if (density.empty()) return;
+  std::vector<double> taken;
+  taken.reserve(part.vertex.size());
+  for (const PositivePart::Origin& origin : part.vertex) {
+    double sum = 0;
+    for (int i = 0; i < 3 && origin.vertex[i] >= 0; ++i)
+      sum += origin.weight[i] * std::log(std::clamp(density[built.input_vertex[origin.vertex[i]]], kLeastDensity, kMostDensity));
+    taken.push_back(std::exp(sum));
+  }
+  density = std::move(taken);
+}
+
+}  // namespace
+
+RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, PlaneSet planes) {
+  RemeshDomain domain;
+  domain.options = options;
+  domain.options.symmetry.planes = planes;
+  const std::vector<char> is_marked = marked_halfedges(built, options.marked_edges);
+  if (planes == 0) {
+    domain.mesh = built.mesh;
+    domain.is_marked = is_marked;
+    domain.input_vertex = domain.values.input_vertex = built.input_vertex;
+    domain.values.input_face = built.input_face;
+    return domain;
+  }
+  PositivePart part = positive_part(built.mesh, planes);
+  for (const PositivePart::Origin& origin : part.vertex) {
+    domain.values.input_vertex.push_back(static_cast<int>(domain.input_vertex.size()));
+    domain.input_vertex.push_back(origin.is_vertex() ? built.input_vertex[origin.vertex[0]] : -1);
+  }
+  for (const int h : part.halfedge) domain.is_marked.push_back(h >= 0 && is_marked[h]);
+  for (const int f : part.face) domain.values.input_face.push_back(built.input_face[f]);
+  take_nearest(part, built, domain.options.vertex_guides);
+  take_nearest(part, built, domain.options.vertex_frames);
+  take_between(part, built, domain.options.density);
+  domain.faces_in_plane = part.faces_in_plane;
+  domain.mesh = std::move(part.mesh);
+  return domain;
+}
+
+QuadMesh whole_of(const ComponentResult& component, const ComponentPlan& plan, const TriangleMesh& mesh,
+                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options) {
+  if (options.symmetry.planes == 0) return component.mesh;
+  const double sharp_angle = options.use_sharp_angle ? options.sharp_angle : 360;
+  const std::vector<char> creases =
+      seam_creases(component.mesh, plan.curve_planes, mesh, options.symmetry.planes, sharp_angle, marked);
+  return mirror_quads(component.mesh, plan.curve_planes, options.symmetry.planes, creases);
+}
+
+std::vector<std::string> symmetry_warnings(const RemeshDomain& domain, const TriangleMesh& input, const QuadMesh& result) {
+  std::vector<std::string> warnings;
+  if (domain.faces_in_plane > 0)
+    warnings.push_back(std::to_string(domain.faces_in_plane) + " faces in a mirror plane are left out");
+  if (euler_characteristic(complex_of_quads(result.positions, result.quads)) != input.euler_characteristic())
+    warnings.push_back("the mirrored surface has another topology than the input");
+  return warnings;
+}
+
+}  // namespace hybrid_quad

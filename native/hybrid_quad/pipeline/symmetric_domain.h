@@ -1,0 +1,40 @@
+#pragma once
+
+#include "hybrid_quad/mesh/mesh_builder.h"
+#include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/symmetry/symmetry.h"
+
+namespace hybrid_quad {
+
+/// Which mirror planes a run uses, and how symmetric the surface is about each.
+SymmetryRecord settle_symmetry(const SymmetryOptions& options, const TriangleMesh& mesh, const RunContext& context);
+
+/// The mesh that is remeshed: the input, or its positive part, and what is asked of it.
+struct RemeshDomain {
+  TriangleMesh mesh;
+  std::vector<int> input_vertex;  ///< #V: polygon-soup vertex, -1 for one that a mirror plane made
+  std::vector<char> is_marked;    ///< 3 #F: on an edge marked as a feature
+  RemeshOptions options;          ///< with the planes that are used
+  BuiltMesh values;               ///< no mesh: where in the arrays of `options` the values of a vertex and a face are
+  int faces_in_plane = 0;         ///< left out
+};
+
+/// Vertices that a plane made get values between those of their edge's ends; directions, which have no middle, those of the
+/// nearer one.
+RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, PlaneSet planes);
+
+/// The component's quads with their mirror images; unchanged where no planes are used.
+/// \param mesh  of the component  \param marked  pairs of its vertices that are features
+QuadMesh whole_of(const ComponentResult& component, const ComponentPlan& plan, const TriangleMesh& mesh,
+                  const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options);
+
+/// Number of mirror images that make up the whole.
+inline int image_count(PlaneSet planes) {
+  return 1 << (has_plane(planes, 0) + has_plane(planes, 1) + has_plane(planes, 2));
+}
+
+/// What a user should know about the symmetry that was used: faces left out, another topology.
+std::vector<std::string> symmetry_warnings(const RemeshDomain& domain, const TriangleMesh& input, const QuadMesh& result);
+
+}  // namespace hybrid_quad
