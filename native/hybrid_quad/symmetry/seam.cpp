@@ -114,6 +114,7 @@ std::vector<PlaneSet> seam_planes(const TriangleMesh& mesh, const FeatureGraph& 
 
 int open_seams(QuadComplex& complex, const std::vector<PlaneSet>& curve_planes) {
   constexpr int kMostRounds = 10;
+  if (std::all_of(curve_planes.begin(), curve_planes.end(), [](PlaneSet planes) { return planes == 0; })) return 0;
   int changes = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     // One after the other: an inset gives the quads between two rungs new sides.
