@@ -230,7 +230,8 @@ TEST(CustomFrames, GiveTheirDirectionsAndLengths) {
   const RemeshResult result = remeshed(mesh, options);
   EXPECT_TRUE(violations_of(result.mesh).empty());
   const Stretch stretch = stretch_of(result.mesh);
-  EXPECT_NEAR(stretch.ratio, 2, 0.3);
+  // Whole quads around and along the tube: some forty each, to be hit within a few of the asked count.
+  EXPECT_NEAR(stretch.ratio, 2, 0.4);
   EXPECT_GT(stretch.round, 0.9);
   EXPECT_NEAR(result.report.quads, 2000, 160);
 }

@@ -163,7 +163,8 @@ class ComponentRemesher {
     const SizedFrames sized = clock_.measure("sizing", [&] {
       SizingOptions o;
       constexpr double kWhereAsked = 10;  // sizes that someone asked for count more than even ones
-      const double fidelity = curl_weight_of(options_.size_fidelity) * (wishes_.density.empty() ? 1 : kWhereAsked);
+      const bool asked_sizes = !wishes_.density.empty() || !wishes_.corner_frames.empty();
+      const double fidelity = curl_weight_of(options_.size_fidelity) * (asked_sizes ? kWhereAsked : 1);
       o.curl_weight = std::max(settings_.curl_weight, fidelity);
       o.direction_weight = direction_weight_;
       o.stretch = stretch_;

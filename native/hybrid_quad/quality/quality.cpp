@@ -169,6 +169,26 @@ std::vector<Vector3> curve_samples(const TriangleMesh& input, const FeatureGraph
   return points;
 }
 
+/// Smallest cosine between a normal and those of the faces at a point of a surface: two on an edge, more at a vertex.
+double least_agreement(const TriangleMesh& mesh, const SurfacePoint& point, const Vector3& normal, double touches) {
+  double least = normal.dot(mesh.normal(point.face));
+  for (int h = 3 * point.face; h < 3 * point.face + 3; ++h) {
+    if ((mesh.position(mesh.from(h)) - point.position).norm() <= touches) {
+      const int first = mesh.outgoing(mesh.from(h));
+      for (int k = first; k >= 0;) {
+        least = std::min(least, normal.dot(mesh.normal(k / 3)));
+        k = mesh.rotate_ccw(k);
+        if (k == first) break;
+      }
+    }
+    const Vector3 edge = mesh.edge_vector(h), to_point = point.position - mesh.position(mesh.from(h));
+    const int across = mesh.opposite(h);
+    if (across >= 0 && to_point.cross(edge).norm() <= touches * edge.norm())
+      least = std::min(least, normal.dot(mesh.normal(across / 3)));
+  }
+  return least;
+}
+
 }  // namespace
 
 double scaled_jacobian(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
@@ -216,7 +236,7 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
 }
 
 bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size) {
-  constexpr double kAgainst = -0.15, kReach = 0.28;
+  constexpr double kAgainst = -0.15, kReach = 0.28, kTouches = 1e-6;
   Vector3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
   const double length = normal.norm();
   if (!(length > 0)) return false;
@@ -228,7 +248,7 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
     size += 0.25 * (corners[(i + 1) % 4] - corners[i]).norm();
   }
   const SurfacePoint near = surface.nearest(centre);
-  if (near.face < 0 || normal.dot(surface.mesh().normal(near.face)) >= kAgainst) return false;
+  if (near.face < 0 || least_agreement(surface.mesh(), near, normal, kTouches * size) >= kAgainst) return false;
   SurfaceIndex::Filter along;
   along.normal = normal;
   along.min_cosine = 0.05;

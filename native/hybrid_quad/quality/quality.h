@@ -24,7 +24,7 @@ struct ShapeQuality {
 
 ShapeQuality shape_quality(const QuadMesh& mesh);
 
-/// Whether a quad points against the surface: against its nearest point and against all of it within a quarter of
+/// Whether a quad points against the surface: against a face at its nearest point and against all of it within a quarter of
 /// the quad's mean edge length beyond that, so that the far side of a thin sheet does not count.
 /// \param least_size  for quads with shorter edges (mean, scene units) it is not enough that a face comes so near: its middle
 ///                    must
