@@ -3,6 +3,9 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#include "hybrid_quad/base/interruptible.h"
 
 namespace hybrid_quad {
 
@@ -19,14 +22,13 @@ double largest_diagonal(const SparseMatrix& lower) {
 }
 
 /// Factorizes A + shift I with the smallest shift of a few that leaves only positive pivots. \return success
-bool factorize(const SparseMatrix& lower, Factor& factor, const RunContext& context) {
-  const double largest = largest_diagonal(lower);
-  factor.analyzePattern(lower);
+bool factorize(const std::shared_ptr<const SparseMatrix>& lower, const std::shared_ptr<Factor>& factor, const RunContext& context) {
+  const double largest = largest_diagonal(*lower);
+  run_interruptibly(context, 0.1, [=] { factor->analyzePattern(*lower); });
   for (const double shift : {0.0, 1e-14, 1e-11, 1e-8}) {
-    context.checkpoint(0.3);
-    factor.setShift(shift * largest);
-    factor.factorize(lower);
-    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 0) return true;
+    factor->setShift(shift * largest);
+    run_interruptibly(context, 0.3, [=] { factor->factorize(*lower); });
+    if (factor->info() == Eigen::Success && factor->vectorD().minCoeff() > 0) return true;
   }
   return false;
 }
@@ -39,12 +41,12 @@ Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& r
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
   const double size = right_side.norm();
   if (!(size > 0) || !std::isfinite(size)) return x;
-  Factor factor;
-  if (!factorize(lower, factor, context)) return x;
+  const auto factor = std::make_shared<Factor>();
+  if (!factorize(std::make_shared<const SparseMatrix>(lower), factor, context)) return x;
   Eigen::VectorXd residual = right_side;
   double left = size;
   for (int step = 0; step < kRefinements && left > kTolerance * size; ++step) {
-    const Eigen::VectorXd improved = x + factor.solve(residual);
+    const Eigen::VectorXd improved = x + factor->solve(residual);
     const Eigen::VectorXd rest = right_side - lower.selfadjointView<Eigen::Lower>() * improved;
     if (!(rest.norm() < left)) break;
     x = improved;

@@ -3,7 +3,9 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "hybrid_quad/base/interruptible.h"
 #include "hybrid_quad/periodic_field/phase_graph.h"
 
 namespace hybrid_quad {
@@ -49,12 +51,14 @@ class SlipProblem {
     assemble(stiffness, grid);
     context.checkpoint(0.6);
     if (!factored_) {
-      factor_.compute(lower_);
-      if (factor_.info() != Eigen::Success) return;
+      const auto factor = factor_;
+      const auto lower = std::make_shared<const Eigen::SparseMatrix<double>>(lower_);
+      run_interruptibly(context, 0.5, [=] { factor->compute(*lower); });
+      if (factor_->info() != Eigen::Success) return;
       factored_ = true;
     }
     context.checkpoint(0.7);
-    const Eigen::VectorXd change = improved(factor_.solve(right_side_), context);
+    const Eigen::VectorXd change = improved(factor_->solve(right_side_), context);
     if (!change.allFinite()) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
@@ -120,7 +124,7 @@ class SlipProblem {
     Eigen::VectorXd applied = lower_.selfadjointView<Eigen::Lower>() * x;
     Eigen::VectorXd residual = right_side_ - applied;
     const double goal = kResidual * right_side_.norm();
-    Eigen::VectorXd solved = factor_.solve(residual), direction = solved;
+    Eigen::VectorXd solved = factor_->solve(residual), direction = solved;
     double slope = residual.dot(solved);
     for (int step = 0; step < kMostSteps && residual.norm() > goal && slope > 0; ++step) {
       applied = lower_.selfadjointView<Eigen::Lower>() * direction;
@@ -128,7 +132,7 @@ class SlipProblem {
       if (!(curvature > 0)) break;
       x += (slope / curvature) * direction;
       residual -= (slope / curvature) * applied;
-      solved = factor_.solve(residual);
+      solved = factor_->solve(residual);
       const double next = residual.dot(solved);
       direction = solved + (next / slope) * direction;
       slope = next;
@@ -146,7 +150,8 @@ class SlipProblem {
   std::vector<Eigen::Triplet<double>> entries_;
   Eigen::SparseMatrix<double> lower_;
   Eigen::VectorXd right_side_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+  std::shared_ptr<Factor> factor_ = std::make_shared<Factor>();
   bool factored_ = false;
 };
 
