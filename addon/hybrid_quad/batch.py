@@ -54,5 +54,11 @@ def _package_of_this_folder() -> ModuleType:
 
 if __name__ == "__main__":
     status = main()
+    if not bpy.app.binary_path:
+        # bpy 4.2 as a Python module can crash while it shuts down after classes were registered, even where they are gone
+        # again. Everything is written by now.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
     if status:
         sys.exit(status)
