@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "hybrid_quad/spanning_parameterization/dislocations.h"
+#include "hybrid_quad/spanning_parameterization/sign_gauge.h"
 #include "hybrid_quad/spanning_parameterization/spanning_parameterization.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"
@@ -123,6 +124,63 @@ TEST(SpanningParameterization, BoxIsWholeOnItsGrid) {
   EXPECT_EQ(s.param.folded_feature_edges, 0);
   EXPECT_EQ(regular_faces(s.param), surface.mesh.face_count());
   EXPECT_DOUBLE_EQ(grid_area(s.param), 2 * (4 * 4 + 4 * 8 + 4 * 8));
+}
+
+TEST(SpanningParameterization, RowsThatEndOnSidesWithoutConesGoOverTheEdgesOfABox) {
+  // Every side wants another length: what one has too many of, another has too few. A side has no cones, and a whole
+  // dislocation cannot cross an edge.
+  for (const double misfit : {0.08, 0.15}) {
+    const WorkingSurface surface = test::surface_of(test::box(20, {1, 2, 1.5}), 0.12);
+    FrameField frames = test::smooth_frames(surface, 0.12);
+    for (int f = 0; f < surface.mesh.face_count(); ++f) {
+      const Vector3 n = surface.mesh.normal(f);
+      const double scale = 1 + misfit * (n[0] - 0.5 * n[1] + 1.5 * n[2]);
+      frames.du[f] *= scale;
+      frames.dv[f] *= scale;
+    }
+    const SpanningParameterization p = solved(surface, frames).param;
+    EXPECT_GT(p.dislocations_found, 0);
+    EXPECT_EQ(p.dislocations_left, 0);
+    EXPECT_EQ(p.vanished_curves, 0);
+    EXPECT_DOUBLE_EQ(grid_area(p), std::round(grid_area(p)));
+  }
+}
+
+TEST(SignGauge, EvensOutWhatAShiftOfValuesExplains) {
+  const WorkingSurface surface = test::surface_of(test::torus(30, 20), 0.3, 181);
+  const TriangleMesh& mesh = surface.mesh;
+  LiftedGrid grid;
+  grid.value.assign(mesh.vertex_count(), Vector2(0.25, 0.5));
+  grid.jump.assign(mesh.halfedge_count(), IntVector2{0, 0});
+  grid.corner_turn.assign(mesh.halfedge_count(), 0);
+  grid.corner_turn[5] = 1;  // gauges differ somewhere
+  std::vector<Vector2> measured(mesh.halfedge_count());
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int inside = mesh.position(mesh.to(h))[2] > 0, outside = mesh.position(mesh.from(h))[2] > 0;
+    grid.jump[h] = {3 * (inside - outside), 0};
+    measured[h] = grid.across_half_edge(mesh, h);
+  }
+  ASSERT_TRUE(make_jumps_even(mesh, grid));
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    EXPECT_EQ((grid.jump[h][0] + grid.jump[h][1]) % 2, 0);
+    EXPECT_EQ(grid.across_half_edge(mesh, h), measured[h]);
+  }
+}
+
+TEST(SignGauge, RefusesALoopThatIsOdd) {
+  const WorkingSurface surface = test::surface_of(test::torus(30, 20), 0.3, 181);
+  const TriangleMesh& mesh = surface.mesh;
+  LiftedGrid grid;
+  grid.value.assign(mesh.vertex_count(), Vector2(0, 0));
+  grid.jump.assign(mesh.halfedge_count(), IntVector2{0, 0});
+  grid.corner_turn.assign(mesh.halfedge_count(), 0);
+  // One row more around the tube: where the torus is cut by a half plane.
+  const auto beyond = [&](int v) { return mesh.position(v)[1] > 0; };
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (mesh.position(mesh.from(h))[0] > 0 && beyond(mesh.from(h)) != beyond(mesh.to(h)))
+      grid.jump[h] = {beyond(mesh.to(h)) ? 1 : -1, 0};
+  EXPECT_FALSE(can_make_jumps_even(mesh, grid));
+  EXPECT_FALSE(make_jumps_even(mesh, grid));
 }
 
 TEST(SpanningParameterization, ConesTakeDislocationsIn) {

@@ -1,5 +1,6 @@
 #include "hybrid_quad/frame_field/frame_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -111,7 +112,26 @@ FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vect
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (!surface.features.on_feature[v] && !mesh.is_boundary_vertex(v))
       field.cone_index[v] = static_cast<std::int8_t>(quarters[v]);
+  field.feature_cones = count_feature_cones(surface, field.du, field.dv);
   return field;
+}
+
+int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv) {
+  const TriangleMesh& mesh = surface.mesh;
+  const FaceAngles angles(mesh);
+  const std::vector<double> directions = frame_directions(mesh, du, dv);
+  std::vector<char> is_marked(mesh.halfedge_count());
+  for (int h = 0; h < mesh.halfedge_count(); ++h) is_marked[h] = surface.features.is_feature(h);
+  std::vector<int> quads(mesh.vertex_count(), 0);
+  int count = 0;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!is_marked[h]) continue;
+    const int quarters = sector_quarters(mesh, angles, directions, h, is_marked);
+    count += quarters < 1;
+    quads[mesh.from(h)] += std::max(1, quarters);
+  }
+  for (int v = 0; v < mesh.vertex_count(); ++v) count += quads[v] != 0 && quads[v] != 4 && !mesh.is_boundary_vertex(v);
+  return count;
 }
 
 std::vector<std::string> violations_of(const FrameField& field, const WorkingSurface& surface) {

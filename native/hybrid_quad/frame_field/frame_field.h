@@ -14,6 +14,8 @@ struct FrameField {
   std::vector<std::uint8_t> matching;   ///< 3 #F: (u, v) in the gauge of opposite(h)'s face = turned((u, v) in h's face, matching[h])
   std::vector<std::int8_t> cone_index;  ///< #V, quarters of a turn: +1 where three quads meet, -1 where five do; 0 on features
 
+  int feature_cones = 0;                ///< irregular vertices that features force: see count_feature_cones
+
   /// (du, dv) along half-edge h, measured in the frame of its face.
   Vector2 grid_vector(const TriangleMesh& mesh, int h) const {
     const Vector3 e = mesh.edge_vector(h);
@@ -24,6 +26,8 @@ struct FrameField {
     for (const auto c : cone_index) n += c != 0;
     return n;
   }
+  /// The fewest vertices inside the surface at which other than four quads meet, on features too.
+  int singularity_count() const { return cone_count() + feature_cones; }
 };
 
 struct FrameFieldOptions {
@@ -47,6 +51,11 @@ FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOpti
 
 /// Matchings, combing and cone indices of given frames (rows du, dv per face).
 FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vector3> du, std::vector<Vector3> dv);
+
+/// Irregular vertices inside the surface that the field has because of features: vertices on them where, sector by sector
+/// and at least one in each, other than four quads meet; and one beside every acute tip, a sector in which frames leave no
+/// room for the quad that has to be there, because three quads meet where that quad ends.
+int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
 
 std::vector<std::string> violations_of(const FrameField& field, const WorkingSurface& surface);
 

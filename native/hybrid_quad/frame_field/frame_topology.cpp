@@ -71,6 +71,18 @@ int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::v
   return 2 - nearest_quarters(sector);
 }
 
+int sector_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int first,
+                    const std::vector<char>& is_marked) {
+  double sector = deviation_from_axis(angles, directions, first);
+  for (int h = first;;) {
+    sector += angles.corner(h);
+    const int last = TriangleMesh::previous(h);
+    h = mesh.rotate_ccw(h);
+    if (h < 0 || is_marked[h]) return nearest_quarters(sector - deviation_from_axis(angles, directions, last));
+    sector -= turn_across(mesh, angles, directions, last).angle;
+  }
+}
+
 std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
                                  const std::vector<std::uint8_t>* matching) {
   std::vector<int> quarters(mesh.vertex_count());

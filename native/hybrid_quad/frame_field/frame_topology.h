@@ -33,4 +33,10 @@ int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::v
 std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
                                  const std::vector<std::uint8_t>* matching = nullptr);
 
+/// Quads that the field puts at a vertex between half-edge `first`, which leaves it, and the next marked one
+/// counterclockwise: all around where no other is marked, to the boundary where that comes first. 0 at an acute tip.
+/// \param is_marked  3 #F: where sectors end, as at features
+int sector_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int first,
+                    const std::vector<char>& is_marked);
+
 }  // namespace hybrid_quad

@@ -104,7 +104,7 @@ class ComponentRemesher {
       stretch_ = stretch_of(surface_, field, wishes_, options_);
       return field;
     });
-    result_.field_singularities = unit.cone_count();
+    result_.field_singularities = unit.singularity_count();
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(unit, surface_, "frame field"));
     return unit;
   }

@@ -83,7 +83,7 @@ struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
   int irregular_vertices = 0;            ///< interior vertices of valence != 4
-  int field_singularities = 0;
+  int field_singularities = 0;           ///< inside the surface, on features too
   int dislocations = 0;                  ///< left after cancellation
   int dislocations_found = 0;
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover

@@ -8,15 +8,13 @@
 #include <tuple>
 #include <utility>
 
-#include "hybrid_quad/spanning_parameterization/strip_widths.h"
+#include "hybrid_quad/spanning_parameterization/row_ends.h"
 
 namespace hybrid_quad {
 
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Quads that a slide over a feature costs: it skews the grid on the other side too.
-constexpr double kFeatureCost = 0.3;
 /// Partners tried for a dislocation that cannot go anywhere alone, and how often that is tried.
 constexpr int kPartners = 8;
 constexpr int kMostMerges = 200;
@@ -42,10 +40,6 @@ struct LaterMove {
   }
 };
 
-IntVector2 sum(const IntVector2& x, const IntVector2& y) { return {x[0] + y[0], x[1] + y[1]}; }
-IntVector2 minus(const IntVector2& x) { return {-x[0], -x[1]}; }
-bool is_zero(const IntVector2& x) { return x[0] == 0 && x[1] == 0; }
-
 /// The unit dislocation of phase k (0: a, 1: b) that a Burgers vector holds, or zero.
 IntVector2 unit_part(const IntVector2& burgers, int k) {
   const int n = windings(burgers)[k];
@@ -55,31 +49,10 @@ IntVector2 unit_part(const IntVector2& burgers, int k) {
 
 class Canceller {
  public:
-  Canceller(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
-            const SpanningOptions& options, const RunContext& context, LiftedGrid& grid)
-      : surface_(surface),
-        mesh_(surface.mesh),
-        frames_(frames),
-        measure_(measure),
-        options_(options),
-        context_(context),
-        grid_(grid),
-        strips_(surface.mesh, frames, measure, grid) {
+  Canceller(const SpanningOptions& options, const RunContext& context, MovableGrid& grid)
+      : mesh_(grid.mesh()), frames_(grid.frames()), options_(options), context_(context), grid_(grid) {
     const int n = mesh_.face_count();
-    burgers_.resize(n);
-    centre_.resize(n);
-    scale_.resize(n);
-    double quads = 0;
-    for (int f = 0; f < n; ++f) {
-      burgers_[f] = grid_.burgers(f);
-      const auto& t = mesh_.face(f);
-      centre_[f] = (mesh_.position(t[0]) + mesh_.position(t[1]) + mesh_.position(t[2])) / 3;
-      const double density = frames_.du[f].cross(frames_.dv[f]).norm();
-      scale_[f] = std::isfinite(density) ? std::sqrt(density) : 0;
-      quads += std::isfinite(density) ? density * mesh_.area(f) : 0;
-    }
-    // Nothing on the surface is further away than a few times its size in quads; a longer way only shears it.
-    longest_ = std::max(8.0, 4 * std::sqrt(quads));
+    longest_ = grid.longest_way();
     distance_.assign(n, 0);
     arrived_.resize(n);
     over_.assign(n, -1);
@@ -91,33 +64,12 @@ class Canceller {
 
   void run() {
     for (int f = 0; f < mesh_.face_count(); ++f)
-      if (!is_zero(burgers_[f])) enqueue(f);
+      if (!is_zero(grid_.burgers(f))) enqueue(f);
     drain();
     for (int merges = 0; merges < kMostMerges && merge_once(); ++merges) drain();
   }
 
  private:
-  double step_length(int f, int g) const {
-    return (centre_[f] - centre_[g]).norm() * 0.5 * (scale_[f] + scale_[g]);
-  }
-
-  /// Whether a dislocation may slide over half-edge h: over features only along them, no curve below its
-  /// fewest edges, no strip below one quad.
-  bool may_cross(int h, const IntVector2& b) const {
-    if (!strips_.allow(h, b)) return false;
-    if (measure_.axis[h] < 0) return true;
-    if (b[1 - measure_.axis[h]] != 0) return false;
-    const int curve = surface_.features.halfedge_curve[h];
-    const int shorter = b[measure_.axis[h]] * along_sign(measure_, h);
-    return shorter <= 0 ||
-           grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);
-  }
-
-  bool takes_in(int v) const {
-    return grid_.constraint[v] == GridConstraint::kCorner && (grid_.holonomy[v] & 1) &&
-           !surface_.features.on_feature[v];
-  }
-
   /// The cheapest end that face t itself offers to what has arrived there.
   void look_for_end(int t, bool at_source, Move& best) const {
     const double d = distance_[t];
@@ -129,14 +81,14 @@ class Canceller {
     }
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       const int v = mesh_.from(h);
-      if (mesh_.outgoing(v) == h && takes_in(v) && d + options_.cone_cost < best.cost) {
+      if (mesh_.outgoing(v) == h && grid_.takes_in(v) && d + options_.cone_cost < best.cost) {
         best.cost = d + options_.cone_cost;
         best.end = MoveEnd::kCone;
         best.end_face = t;
         best.end_halfedge = h;
       }
-      if (mesh_.opposite(h) < 0 && d + kFeatureCost < best.cost && may_cross(h, b)) {
-        best.cost = d + kFeatureCost;
+      if (mesh_.opposite(h) < 0 && d + kFeatureCrossing < best.cost && grid_.may_cross(h, b)) {
+        best.cost = d + kFeatureCrossing;
         best.end = MoveEnd::kBoundary;
         best.end_face = t;
         best.end_halfedge = h;
@@ -145,7 +97,7 @@ class Canceller {
   }
 
   bool cancels(int t, const IntVector2& b) const {
-    return unit_count(sum(burgers_[t], b)) < unit_count(burgers_[t]) + unit_count(b);
+    return unit_count(sum(grid_.burgers(t), b)) < unit_count(grid_.burgers(t)) + unit_count(b);
   }
 
   /// Shortest paths on the dual graph from `source`, the Burgers vector carried along, until nothing cheaper
@@ -179,8 +131,8 @@ class Canceller {
       if ((++steps_ & 0x3fff) == 0) context_.checkpoint(0.4);
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const int o = mesh_.opposite(h);
-        if (o < 0 || settled_[o / 3] == stamp_ || !may_cross(h, arrived_[t])) continue;
-        const double cost = d + step_length(t, o / 3) + (measure_.axis[h] >= 0 ? kFeatureCost : 0);
+        if (o < 0 || settled_[o / 3] == stamp_ || !grid_.may_cross(h, arrived_[t])) continue;
+        const double cost = d + grid_.step_length(t, o / 3) + (grid_.measure().axis[h] >= 0 ? kFeatureCrossing : 0);
         reach(o / 3, cost, turned(arrived_[t], frames_.matching[h]), h);
       }
     }
@@ -202,59 +154,35 @@ class Canceller {
 
   /// Whether a move found earlier still holds after what has changed since.
   bool still_holds(const Move& move) const {
-    if (unit_count(sum(burgers_[move.source], minus(move.burgers))) + unit_count(move.burgers) !=
-        unit_count(burgers_[move.source]))
+    if (unit_count(sum(grid_.burgers(move.source), minus(move.burgers))) + unit_count(move.burgers) !=
+        unit_count(grid_.burgers(move.source)))
       return false;
     IntVector2 b = move.burgers;
     for (const int h : move.crossed) {
-      if (!may_cross(h, b)) return false;
+      if (!grid_.may_cross(h, b)) return false;
       b = turned(b, frames_.matching[h]);
     }
     if (move.end == MoveEnd::kFace) return cancels(move.end_face, b);
-    return move.end != MoveEnd::kBoundary || may_cross(move.end_halfedge, b);
-  }
-
-  /// What leaves a face over h with Burgers vector b; the other side gets it.
-  void cross(int h, const IntVector2& b) {
-    strips_.cross(h, b);
-    grid_.jump[h] = sum(grid_.jump[h], minus(b));
-    burgers_[h / 3] = sum(burgers_[h / 3], minus(b));
-    if (measure_.axis[h] >= 0)
-      grid_.curve_count[surface_.features.halfedge_curve[h]] -= b[measure_.axis[h]] * along_sign(measure_, h);
-    const int o = mesh_.opposite(h);
-    if (o < 0) return;
-    const IntVector2 there = turned(b, frames_.matching[h]);
-    grid_.jump[o] = sum(grid_.jump[o], there);
-    burgers_[o / 3] = sum(burgers_[o / 3], there);
+    return move.end != MoveEnd::kBoundary || grid_.may_cross(move.end_halfedge, b);
   }
 
   IntVector2 carry(const std::vector<int>& crossed, IntVector2 b) {
     for (const int h : crossed) {
-      cross(h, b);
+      grid_.cross(h, b);
       b = turned(b, frames_.matching[h]);
     }
     return b;
   }
 
-  /// The cone moves by d with (1 - R) d = -b, R the turn around it: then the grid closes around it without b.
-  void take_in(int outgoing, const IntVector2& b) {
-    const int v = mesh_.from(outgoing), turn = grid_.holonomy[v];
-    const IntVector2 d = turn == 1 ? IntVector2{-(b[0] + b[1]) / 2, (b[0] - b[1]) / 2}
-                                   : IntVector2{(b[1] - b[0]) / 2, -(b[0] + b[1]) / 2};
-    grid_.value[v] += Vector2(d[0], d[1]);
-    grid_.jump[outgoing] = sum(grid_.jump[outgoing], sum(d, minus(turned(d, turn))));
-    burgers_[outgoing / 3] = sum(burgers_[outgoing / 3], minus(b));
-  }
-
   void perform(const Move& move) {
     const IntVector2 b = carry(move.crossed, move.burgers);
-    if (move.end == MoveEnd::kBoundary) cross(move.end_halfedge, b);
-    if (move.end == MoveEnd::kCone) take_in(move.end_halfedge, b);
+    if (move.end == MoveEnd::kBoundary) grid_.cross(move.end_halfedge, b);
+    if (move.end == MoveEnd::kCone) grid_.take_in(move.end_halfedge, b);
   }
 
   void enqueue(int f, int phase) {
     const int version = ++version_[f][phase];
-    const IntVector2 unit = unit_part(burgers_[f], phase);
+    const IntVector2 unit = unit_part(grid_.burgers(f), phase);
     if (is_zero(unit) || steps_ > budget_) return;
     Move move = search(f, unit, longest_, {});
     if (move.end == MoveEnd::kNone) return;
@@ -296,7 +224,7 @@ class Canceller {
   std::vector<Meeting> meetings(int f, const IntVector2& unit) {
     std::vector<Meeting> found;
     search(f, unit, longest_, [&](int t) {
-      if (!is_zero(burgers_[t]) && static_cast<int>(found.size()) < kPartners)
+      if (!is_zero(grid_.burgers(t)) && static_cast<int>(found.size()) < kPartners)
         found.push_back(Meeting{t, distance_[t], arrived_[t], {}});
     });
     for (Meeting& m : found) m.crossed = path_to(m.face);
@@ -315,15 +243,15 @@ class Canceller {
   /// What the unit at face f could do together with either unit part at the meeting's face.
   void try_meeting(int f, const IntVector2& unit, const Meeting& meeting, Merger& best) {
     for (int phase = 0; phase < 2; ++phase) {
-      const IntVector2 rest = meeting.face == f ? sum(burgers_[f], minus(unit)) : burgers_[meeting.face];
+      const IntVector2 rest = meeting.face == f ? sum(grid_.burgers(f), minus(unit)) : grid_.burgers(meeting.face);
       const IntVector2 partner = unit_part(rest, phase);
       if (is_zero(partner) || meeting.distance >= best.cost) continue;
       const IntVector2 both = sum(meeting.burgers, partner);
       // Only (2, 0) and (0, 2) slide along features.
       if (unit_count(both) != 2 || (both[0] != 0 && both[1] != 0)) continue;
-      burgers_[f] = sum(burgers_[f], minus(unit));
+      grid_.pretend(f, minus(unit));
       Move move = search(meeting.face, both, best.cost - meeting.distance, {});
-      burgers_[f] = sum(burgers_[f], unit);
+      grid_.pretend(f, unit);
       if (move.end == MoveEnd::kNone || meeting.distance + move.cost >= best.cost) continue;
       best = Merger{meeting.distance + move.cost, f, unit, meeting, std::move(move)};
     }
@@ -335,7 +263,7 @@ class Canceller {
     best.cost = longest_;
     for (int f = 0; f < mesh_.face_count(); ++f)
       for (int phase = 0; phase < 2; ++phase) {
-        const IntVector2 unit = unit_part(burgers_[f], phase);
+        const IntVector2 unit = unit_part(grid_.burgers(f), phase);
         if (is_zero(unit) || steps_ > budget_) continue;
         for (const Meeting& meeting : meetings(f, unit)) try_meeting(f, unit, meeting, best);
       }
@@ -348,17 +276,11 @@ class Canceller {
     return true;
   }
 
-  const WorkingSurface& surface_;
   const TriangleMesh& mesh_;
   const FrameField& frames_;
-  const GridMeasure& measure_;
   const SpanningOptions& options_;
   const RunContext& context_;
-  LiftedGrid& grid_;
-  StripWidths strips_;
-  std::vector<IntVector2> burgers_;
-  std::vector<Vector3> centre_;
-  std::vector<double> scale_;  ///< quads a unit of length
+  MovableGrid& grid_;
   double longest_ = 0;
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
   // Of the search, valid where the stamp is the current one.
@@ -376,7 +298,9 @@ class Canceller {
 
 void cancel_dislocations(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          const SpanningOptions& options, const RunContext& context, LiftedGrid& grid) {
-  Canceller(surface, frames, measure, options, context, grid).run();
+  MovableGrid movable(surface, frames, measure, grid);
+  Canceller(options, context, movable).run();
+  cancel_row_ends(options, context, movable);
 }
 
 int count_dislocations(const TriangleMesh& mesh, const LiftedGrid& grid) {
