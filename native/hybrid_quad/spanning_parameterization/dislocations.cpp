@@ -102,12 +102,13 @@ class Canceller {
   }
 
   /// Whether a dislocation may slide over half-edge h: over features only along them, no curve below its
-  /// fewest edges, no strip below one quad.
+  /// fewest edges and none with an asked count, no strip below one quad.
   bool may_cross(int h, const IntVector2& b) const {
     if (!strips_.allow(h, b)) return false;
     if (measure_.axis[h] < 0) return true;
     if (b[1 - measure_.axis[h]] != 0) return false;
     const int curve = surface_.features.halfedge_curve[h];
+    if (surface_.features.curves[curve].asked_count > 0) return false;
     const int shorter = b[measure_.axis[h]] * along_sign(measure_, h);
     return shorter <= 0 ||
            grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);

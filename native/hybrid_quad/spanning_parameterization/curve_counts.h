@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/spanning_parameterization/lifted_grid.h"
+
+namespace hybrid_quad {
+
+/// Corners whose parity is settled: u + v is even (sign 1) or odd (-1).
+struct CornerSigns {
+  std::vector<int> vertex;
+  std::vector<int> sign;
+};
+
+/// Psi fixes how many quad edges a curve gets only up to twos: its number is even where both corners have the same sign.
+/// The signs that make the asked counts possible, in every set of corners that such curves connect those that most
+/// corners have already.
+CornerSigns corner_signs(const FeatureGraph& features, const std::vector<PhasePair>& psi);
+
+void impose(const CornerSigns& signs, std::vector<PhasePair>& psi);
+
+/// Gives every curve the quad edges that were asked for, or at least the fewest that it may have, two at a time
+/// (parity is Psi's), where the lift is furthest from the frames. Sets curve_count.
+void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
+                         LiftedGrid& grid);
+
+}  // namespace hybrid_quad
