@@ -1,7 +1,10 @@
 #include "hybrid_quad/spanning_parameterization/curve_counts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
+#include <queue>
 
 namespace hybrid_quad {
 
@@ -93,6 +96,39 @@ void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames
       change(*std::max_element(edges[c].begin(), edges[c].end(), surplus), -2);
     grid.curve_count[c] = rounded(length[c]);
   }
+}
+
+std::vector<char> faces_near_counts(const WorkingSurface& surface, const FrameField& frames) {
+  constexpr double kNear = 6;  // quads
+  const TriangleMesh& mesh = surface.mesh;
+  const auto& curves = surface.features.curves;
+  if (std::none_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; })) return {};
+  std::vector<Vector3> centre;
+  std::vector<double> distance(mesh.face_count(), kNear);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto& t = mesh.face(f);
+    centre.push_back((mesh.position(t[0]) + mesh.position(t[1]) + mesh.position(t[2])) / 3);
+    for (int h = 3 * f; h < 3 * f + 3; ++h)
+      if (surface.features.is_feature(h) && curves[surface.features.halfedge_curve[h]].asked_count > 0) distance[f] = 0;
+    if (distance[f] == 0) queue.emplace(0, f);
+  }
+  while (!queue.empty()) {
+    const auto [at, f] = queue.top();
+    queue.pop();
+    if (at > distance[f]) continue;
+    for (int h = 3 * f; h < 3 * f + 3; ++h) {
+      const int g = mesh.opposite(h) / 3;
+      if (mesh.opposite(h) < 0) continue;
+      const double reached = at + (centre[f] - centre[g]).norm() * std::sqrt(frames.du[f].cross(frames.dv[f]).norm());
+      if (reached >= distance[g]) continue;
+      queue.emplace(distance[g] = reached, g);
+    }
+  }
+  std::vector<char> near(mesh.face_count());
+  std::transform(distance.begin(), distance.end(), near.begin(), [](double d) { return d < kNear; });
+  return near;
 }
 
 }  // namespace hybrid_quad

@@ -24,4 +24,7 @@ void impose(const CornerSigns& signs, std::vector<PhasePair>& psi);
 void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          LiftedGrid& grid);
 
+/// #F: whether a face is within a few quads of a curve with an asked count; empty where there is no such curve.
+std::vector<char> faces_near_counts(const WorkingSurface& surface, const FrameField& frames);
+
 }  // namespace hybrid_quad

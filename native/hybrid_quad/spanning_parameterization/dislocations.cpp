@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "hybrid_quad/spanning_parameterization/curve_counts.h"
 #include "hybrid_quad/spanning_parameterization/strip_widths.h"
 
 namespace hybrid_quad {
@@ -80,6 +81,7 @@ class Canceller {
     }
     // Nothing on the surface is further away than a few times its size in quads; a longer way only shears it.
     longest_ = std::max(8.0, 4 * std::sqrt(quads));
+    near_counts_ = faces_near_counts(surface, frames);
     distance_.assign(n, 0);
     arrived_.resize(n);
     over_.assign(n, -1);
@@ -97,6 +99,12 @@ class Canceller {
   }
 
  private:
+  /// Rows that a counted curve calls for end near it, however far they could go: else they run through the whole surface.
+  double longest_from(int f) const {
+    constexpr double kLongestNearCounts = 8;
+    return near_counts_.empty() || !near_counts_[f] ? longest_ : std::min(longest_, kLongestNearCounts);
+  }
+
   double step_length(int f, int g) const {
     return (centre_[f] - centre_[g]).norm() * 0.5 * (scale_[f] + scale_[g]);
   }
@@ -257,7 +265,7 @@ class Canceller {
     const int version = ++version_[f][phase];
     const IntVector2 unit = unit_part(burgers_[f], phase);
     if (is_zero(unit) || steps_ > budget_) return;
-    Move move = search(f, unit, longest_, {});
+    Move move = search(f, unit, longest_from(f), {});
     if (move.end == MoveEnd::kNone) return;
     move.phase = phase;
     move.version = version;
@@ -296,7 +304,7 @@ class Canceller {
   /// Other dislocations within reach of the unit, nearest first; its own face counts.
   std::vector<Meeting> meetings(int f, const IntVector2& unit) {
     std::vector<Meeting> found;
-    search(f, unit, longest_, [&](int t) {
+    search(f, unit, longest_from(f), [&](int t) {
       if (!is_zero(burgers_[t]) && static_cast<int>(found.size()) < kPartners)
         found.push_back(Meeting{t, distance_[t], arrived_[t], {}});
     });
@@ -318,14 +326,15 @@ class Canceller {
     for (int phase = 0; phase < 2; ++phase) {
       const IntVector2 rest = meeting.face == f ? sum(burgers_[f], minus(unit)) : burgers_[meeting.face];
       const IntVector2 partner = unit_part(rest, phase);
-      if (is_zero(partner) || meeting.distance >= best.cost) continue;
+      const double limit = std::min(best.cost, longest_from(f));
+      if (is_zero(partner) || meeting.distance >= limit) continue;
       const IntVector2 both = sum(meeting.burgers, partner);
       // Only (2, 0) and (0, 2) slide along features.
       if (unit_count(both) != 2 || (both[0] != 0 && both[1] != 0)) continue;
       burgers_[f] = sum(burgers_[f], minus(unit));
-      Move move = search(meeting.face, both, best.cost - meeting.distance, {});
+      Move move = search(meeting.face, both, limit - meeting.distance, {});
       burgers_[f] = sum(burgers_[f], unit);
-      if (move.end == MoveEnd::kNone || meeting.distance + move.cost >= best.cost) continue;
+      if (move.end == MoveEnd::kNone || meeting.distance + move.cost >= limit) continue;
       best = Merger{meeting.distance + move.cost, f, unit, meeting, std::move(move)};
     }
   }
@@ -361,6 +370,7 @@ class Canceller {
   std::vector<Vector3> centre_;
   std::vector<double> scale_;  ///< quads a unit of length
   double longest_ = 0;
+  std::vector<char> near_counts_;  ///< #F, or empty
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
   // Of the search, valid where the stamp is the current one.
   std::vector<double> distance_;
