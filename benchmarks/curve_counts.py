@@ -38,7 +38,7 @@ Chain = list[int]  # vertices
 
 
 def main() -> int:
-    """Runs every model with every demand and prints the table; exit status 1 if a number was missed without a reason."""
+    """Runs every model with every demand and prints the table; exit status 1 if a number was missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--models", type=Path, default=COLLECTION, help="folder of the models (default %(default)s)")
     parser.add_argument("--quads", type=int, nargs="+", default=[2000])

@@ -16,7 +16,7 @@ def _task(obj):
 
 def _ask(obj, number: int, is_asked) -> None:
     points = points_of(obj)
-    values = [number if is_asked(points[edge.vertices[0]]) and is_asked(points[edge.vertices[1]]) else 0 for edge in obj.data.edges]
+    values = [number if all(is_asked(points[v]) for v in edge.vertices) else 0 for edge in obj.data.edges]
     obj.data.attributes.new("hybrid_quad_count", "INT", "EDGE").data.foreach_set("value", values)
 
 

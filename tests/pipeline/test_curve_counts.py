@@ -12,13 +12,18 @@ from support import surfaces
 from support.results import assert_sound
 
 
+def _on_edge(points, axis, corner):
+    """Which points are on the line along an axis through a corner."""
+    return np.isclose(np.delete(points, axis, axis=1), np.delete(corner, axis)).all(axis=1)
+
+
 def _box_edge(vertices, axis):
-    on = np.flatnonzero(np.isclose(np.delete(vertices, axis, axis=1), vertices.min(axis=0)[np.arange(3) != axis]).all(axis=1))
+    on = np.flatnonzero(_on_edge(vertices, axis, vertices.min(axis=0)))
     return on[np.argsort(vertices[on, axis])].tolist()
 
 
 def _edges_along(result, vertices, axis):
-    on = np.isclose(np.delete(result.vertices, axis, axis=1), vertices.min(axis=0)[np.arange(3) != axis]).all(axis=1)
+    on = _on_edge(result.vertices, axis, vertices.min(axis=0))
     sides = np.sort(np.stack([result.quads, np.roll(result.quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     return len(np.unique(sides[on[sides].all(axis=1)], axis=0))
 
@@ -71,9 +76,10 @@ def test_command_line(tmp_path):
     rows += ["f " + " ".join(str(v + 1) for v in face) for face in np.asarray(faces).tolist()]
     mesh.write_text("\n".join(rows) + "\n")
     counts.write_text(" ".join(map(str, [9, *_box_edge(vertices, 1)])) + "\n")
-    arguments = ["remesh", str(mesh), str(out), "--quads", "300", "--curve-counts", str(counts), "--report", str(report)]
-    assert main([*arguments, "--quiet"]) == 0
+    arguments = ["remesh", str(mesh), str(out), "--quads", "300", "--quiet"]
+    arguments += ["--curve-counts", str(counts), "--report", str(report)]
+    assert main(arguments) == 0
     assert json.loads(report.read_text())["curve_counts"] == [{"asked": 9, "got": 9, "reason": ""}]
     assert (read_mesh(out)[1].sizes == 4).all()
     counts.write_text("9 0 x\n")
-    assert main([*arguments, "--quiet"]) == 2
+    assert main(arguments) == 2

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .mesh_arrays import IntArray
 
 CurveCount = tuple[Sequence[int], int]
-"""A path of vertices, each joined to the next by an edge, and the number of quads along it; a loop repeats its first."""
+"""A path of vertices, each joined to the next by an edge, and the number of quads along. A loop repeats its first."""
 
 
 def as_curve_counts(curve_counts: Iterable[CurveCount] | None) -> list[tuple[list[int], int]]:
