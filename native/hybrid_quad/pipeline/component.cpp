@@ -117,11 +117,15 @@ class ComponentRemesher {
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex index(mesh_, plan_.features.face_region);
-    CountSearch search(plan_.quads);
+    // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
+    constexpr double kLeastBesideCounts = 0.6;
+    const auto& curves = plan_.features.curves;
+    const bool counted = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
+    CountSearch search(plan_.quads, counted ? kLeastBesideCounts * plan_.quads : 0);
     Extraction best;
     bool any = false;
     for (int i = 0; i < kTries; ++i) {
-      const bool last = i + 1 == kTries;
+      const bool last = i + 1 == kTries || search.at_least();
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
       // What is as far off as that needs no improving, unless it is all there is.
@@ -134,7 +138,7 @@ class ComponentRemesher {
         const auto rank = [](const Extraction& e) { return std::make_tuple(e.flawed, e.missed, e.count_error); };
         if (!any || rank(current) < rank(best)) best = std::move(current);
         any = true;
-        if (best.flawed == 0 && best.count_error < tolerance) break;
+        if (last || (best.flawed == 0 && best.count_error < tolerance)) break;
       }
       search.record(count);
     }

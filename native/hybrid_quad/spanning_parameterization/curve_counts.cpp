@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <queue>
 
@@ -96,6 +97,24 @@ void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames
       change(*std::max_element(edges[c].begin(), edges[c].end(), surplus), -2);
     grid.curve_count[c] = rounded(length[c]);
   }
+}
+
+std::vector<CountRange> allowed_counts(const WorkingSurface& surface, const GridMeasure& measure) {
+  constexpr double kShorter = 0.7, kLonger = 1.5;
+  const TriangleMesh& mesh = surface.mesh;
+  const auto& curves = surface.features.curves;
+  std::vector<CountRange> ranges;
+  for (const FeatureCurve& curve : curves) ranges.push_back({fewest_curve_edges(curve), std::numeric_limits<int>::max()});
+  if (std::none_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; })) return ranges;
+  std::vector<double> length(curves.size(), 0.0);
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (measure.axis[h] >= 0 && h > mesh.opposite(h)) length[surface.features.halfedge_curve[h]] += measure.along[h].norm();
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    ranges[c].fewest = std::max(ranges[c].fewest, static_cast<int>(kShorter * length[c]));
+    ranges[c].most = static_cast<int>(kLonger * length[c]) + 2;
+    if (curves[c].asked_count > 0) ranges[c] = {curves[c].asked_count, curves[c].asked_count};
+  }
+  return ranges;
 }
 
 std::vector<char> faces_near_counts(const WorkingSurface& surface, const FrameField& frames) {

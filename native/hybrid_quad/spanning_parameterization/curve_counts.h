@@ -24,6 +24,15 @@ void impose(const CornerSigns& signs, std::vector<PhasePair>& psi);
 void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          LiftedGrid& grid);
 
+/// How many quad edges a curve may have, both included.
+struct CountRange {
+  int fewest, most;
+};
+
+/// #curves: what moving dislocations may make of each. As many as they like, but the fewest; where there are asked
+/// counts, exactly these, and for the others not far from what the frames measure: they would pay for the asked ones.
+std::vector<CountRange> allowed_counts(const WorkingSurface& surface, const GridMeasure& measure);
+
 /// #F: whether a face is within a few quads of a curve with an asked count; empty where there is no such curve.
 std::vector<char> faces_near_counts(const WorkingSurface& surface, const FrameField& frames);
 

@@ -82,6 +82,7 @@ class Canceller {
     // Nothing on the surface is further away than a few times its size in quads; a longer way only shears it.
     longest_ = std::max(8.0, 4 * std::sqrt(quads));
     near_counts_ = faces_near_counts(surface, frames);
+    allowed_ = allowed_counts(surface, measure);
     distance_.assign(n, 0);
     arrived_.resize(n);
     over_.assign(n, -1);
@@ -110,16 +111,14 @@ class Canceller {
   }
 
   /// Whether a dislocation may slide over half-edge h: over features only along them, no curve below its
-  /// fewest edges and none with an asked count, no strip below one quad.
+  /// fewest edges or above its most, no strip below one quad.
   bool may_cross(int h, const IntVector2& b) const {
     if (!strips_.allow(h, b)) return false;
     if (measure_.axis[h] < 0) return true;
     if (b[1 - measure_.axis[h]] != 0) return false;
     const int curve = surface_.features.halfedge_curve[h];
-    if (surface_.features.curves[curve].asked_count > 0) return false;
-    const int shorter = b[measure_.axis[h]] * along_sign(measure_, h);
-    return shorter <= 0 ||
-           grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);
+    const int shorter = b[measure_.axis[h]] * along_sign(measure_, h), after = grid_.curve_count[curve] - shorter;
+    return shorter > 0 ? after >= allowed_[curve].fewest : after <= allowed_[curve].most;
   }
 
   bool takes_in(int v) const {
@@ -371,6 +370,7 @@ class Canceller {
   std::vector<double> scale_;  ///< quads a unit of length
   double longest_ = 0;
   std::vector<char> near_counts_;  ///< #F, or empty
+  std::vector<CountRange> allowed_;  ///< #curves
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
   // Of the search, valid where the stamp is the current one.
   std::vector<double> distance_;
