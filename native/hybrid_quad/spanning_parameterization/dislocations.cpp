@@ -82,6 +82,7 @@ class Canceller {
     // Nothing on the surface is further away than a few times its size in quads; a longer way only shears it.
     longest_ = std::max(8.0, 4 * std::sqrt(quads));
     near_counts_ = faces_near_counts(surface, frames);
+    limit_near_counts(quads);
     allowed_ = allowed_counts(surface, measure);
     distance_.assign(n, 0);
     arrived_.resize(n);
@@ -100,10 +101,18 @@ class Canceller {
   }
 
  private:
-  /// Rows that a counted curve calls for end near it, however far they could go: else they run through the whole surface.
+  /// Rows that a counted curve calls for end near it, however far they could go: else many run through the whole surface.
   double longest_from(int f) const {
-    constexpr double kLongestNearCounts = 8;
-    return near_counts_.empty() || !near_counts_[f] ? longest_ : std::min(longest_, kLongestNearCounts);
+    return near_counts_.empty() || !near_counts_[f] ? longest_ : longest_near_counts_;
+  }
+
+  /// So far that all of them together make or take no more than a quarter of the quads.
+  void limit_near_counts(double quads) {
+    constexpr double kShare = 0.25, kShortest = 8;
+    int units = 0;
+    for (int f = 0; f < mesh_.face_count(); ++f)
+      if (!near_counts_.empty() && near_counts_[f]) units += unit_count(burgers_[f]);
+    longest_near_counts_ = std::min(longest_, std::max(kShortest, 2 * kShare * quads / std::max(1, units)));
   }
 
   double step_length(int f, int g) const {
@@ -369,6 +378,7 @@ class Canceller {
   std::vector<Vector3> centre_;
   std::vector<double> scale_;  ///< quads a unit of length
   double longest_ = 0;
+  double longest_near_counts_ = 0;
   std::vector<char> near_counts_;  ///< #F, or empty
   std::vector<CountRange> allowed_;  ///< #curves
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
