@@ -29,6 +29,7 @@ class Run:
     path: Path
     quads: int
     setting: str
+    arguments: tuple[str, ...] = ()  # more of the command line's
 
     @property
     def name(self) -> str:
@@ -91,7 +92,7 @@ def run_and_judge(
     for old in (out, report):
         old.unlink(missing_ok=True)
     command = [sys.executable, "-m", "hybrid_quad", "remesh", str(run.path), str(out), "--quads", str(run.quads)]
-    command += [*SETTINGS[run.setting], "--threads", str(threads), "--report", str(report), "--quiet"]
+    command += [*SETTINGS[run.setting], *run.arguments, "--threads", str(threads), "--report", str(report), "--quiet"]
     # The run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
     measured = _measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)

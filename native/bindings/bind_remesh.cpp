@@ -55,6 +55,19 @@ py::dict dict_of_symmetry(const SymmetryRecord& record) {
   return result;
 }
 
+/// [{"asked", "got", "reason"}, ...]
+py::list list_of_counts(const std::vector<CurveCountRecord>& records) {
+  py::list result;
+  for (const CurveCountRecord& record : records) {
+    py::dict row;
+    row["asked"] = record.asked;
+    row["got"] = record.got;
+    row["reason"] = record.reason;
+    result.append(row);
+  }
+  return result;
+}
+
 py::dict dict_of_patches(const PatchRecord& patches) {
   py::dict result;
   result["count"] = patches.count;
@@ -109,6 +122,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["patches"] = dict_of_patches(report.patches);
   result["repairs"] = dict_of_repairs(report.repairs);
   result["symmetry"] = dict_of_symmetry(report.symmetry);
+  result["curve_counts"] = list_of_counts(report.curve_counts);
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;
@@ -172,7 +186,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int quads,
                double edge_length, std::optional<double> sharp_angle, const IntArray& sharp_edges,
                const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& density,
-               const DoubleArray& vertex_frames, const DoubleArray& face_frames, double field_smoothness,
+               const DoubleArray& vertex_frames, const DoubleArray& face_frames,
+               const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
                double adaptivity, double anisotropy, double size_fidelity, const std::string& symmetry,
                const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
                py::object cancel, py::object snapshot) {
@@ -188,6 +203,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.density = values_from_array(density);
         options.vertex_frames = frames_from_array(vertex_frames);
         options.face_frames = frames_from_array(face_frames);
+        for (const auto& [path, count] : curve_counts) options.curve_counts.push_back({path, count});
         options.field_smoothness = field_smoothness;
         options.adaptivity = adaptivity;
         options.anisotropy = anisotropy;
@@ -214,7 +230,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
       py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"),
       py::arg("vertex_guides"), py::arg("face_guides"), py::arg("density"), py::arg("vertex_frames"),
-      py::arg("face_frames"), py::arg("field_smoothness"), py::arg("adaptivity"), py::arg("anisotropy"),
+      py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),

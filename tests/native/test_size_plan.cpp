@@ -7,7 +7,7 @@ namespace hybrid_quad {
 namespace {
 
 ComponentPlan plan(const TriangleMesh& mesh, double length) {
-  return plan_component(mesh, length, {}, Wishes{}, RemeshOptions{}, RunContext{});
+  return plan_component(mesh, length, {}, {}, Wishes{}, RemeshOptions{}, RunContext{});
 }
 
 TEST(SizePlan, StretchesFreePartsForWhatNeedsMore) {

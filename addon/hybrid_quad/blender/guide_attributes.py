@@ -1,4 +1,4 @@
-"""Attributes in which direction and density are painted."""
+"""Attributes in which directions, densities and numbers of quads are stored."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import bpy
 import numpy as np
 
 from ..core.guide_values import sound_density, transformed_guides
-from ..core.mesh_arrays import FloatArray
+from ..core.mesh_arrays import FloatArray, IntArray
 
 GUIDE_ATTRIBUTE = "hybrid_quad_guide"  # FLOAT_VECTOR, point or face domain, object space; length: strength
 DENSITY_ATTRIBUTE = "hybrid_quad_density"  # FLOAT, point domain; 2: edges half as long
+
+COUNT_ATTRIBUTE = "hybrid_quad_count"  # INT, edge domain; quads along the chain of edges of this value, 0: free
 
 
 def read_guides(mesh: bpy.types.Mesh, linear: FloatArray) -> FloatArray | None:
@@ -49,3 +51,13 @@ def read_density(mesh: bpy.types.Mesh) -> FloatArray | None:
     attribute.data.foreach_get("value", values)
     density = sound_density(values)
     return density if (density != 1).any() else None
+
+
+def read_counts(mesh: bpy.types.Mesh) -> IntArray | None:
+    """(k,) numbers of quads that edges ask for along the chain they are part of, or None where none does."""
+    attribute = mesh.attributes.get(COUNT_ATTRIBUTE)
+    if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", "INT"):
+        return None
+    values = np.empty(len(attribute.data), np.int32)
+    attribute.data.foreach_get("value", values)
+    return values if (values > 0).any() else None

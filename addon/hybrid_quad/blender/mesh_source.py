@@ -39,6 +39,8 @@ class MeshSource:
         Whether `guides` has one for each face.
     density : (n,) float64 or None
         Painted density: 2 for edges half as long.
+    counts : (k,) int32 or None
+        Number of quads that each edge asks for along the chain of edges of its value; 0 and less: free.
     face_materials, face_smooth : (#F,)
         Material slot and smooth shading of each polygon.
     materials : list
@@ -53,6 +55,7 @@ class MeshSource:
     guides: FloatArray | None
     guides_of_faces: bool
     density: FloatArray | None
+    counts: IntArray | None
     face_materials: IntArray
     face_smooth: npt.NDArray[np.bool_]
     materials: list[Any]
@@ -124,6 +127,7 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
         guides=guide_attributes.read_guides(mesh, linear),
         guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
+        counts=guide_attributes.read_counts(mesh),
         face_materials=_read(mesh.polygons, "material_index", np.int32),
         face_smooth=_read(mesh.polygons, "use_smooth", np.bool_),
         materials=[material.original if material else None for material in mesh.materials],

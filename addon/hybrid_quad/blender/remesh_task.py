@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..core.curve_counts import chains_of_edges
 from ..core.edge_borders import edge_keys
 from ..core.errors import InternalError
 from ..core.guide_values import guides_of_vertices
@@ -62,6 +63,12 @@ class RemeshTask:
         """Vertex pairs of the edges that are features whatever their angle."""
         return self.source.edges[(self.source.marks & self.feature_marks) != 0]
 
+    @property
+    def curve_counts(self) -> list[tuple[list[int], int]]:
+        """Chains of edges that are to get a certain number of quads."""
+        counts = self.source.counts
+        return [] if counts is None else chains_of_edges(self.source.edges, counts)
+
     def guides(self) -> FloatArray | None:
         """(n, 3) or (#F, 3) directions, painted and drawn; None where there are none. Takes its time."""
         source = self.source
@@ -96,6 +103,7 @@ class RemeshTask:
             self.source.polygons,
             self.options,
             sharp_edges=self.marked_edges,
+            curve_counts=self.curve_counts,
             progress=progress,
             cancel=cancel,
             **{name: wish for name, wish in wishes.items() if wish is not None},

@@ -48,6 +48,12 @@ def add_to(commands: Any) -> None:
     sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary, and what --features names")
     parser.add_argument("--features", metavar="FILE", help="edges to keep: two 0-based vertex indices of IN a line")
     parser.add_argument(
+        "--curve-counts",
+        metavar="FILE",
+        help="chains of edges that get an exact number of quads: the number and 0-based vertex indices of IN a line; "
+        "a loop repeats its first vertex",
+    )
+    parser.add_argument(
         "--guides",
         metavar="FILE",
         help="lines that quads follow: an .obj file with l elements, or x y z a line, an empty line between two lines",
@@ -188,6 +194,7 @@ def _center(text: str) -> str | tuple[float, float, float]:
 def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: float) -> RemeshResult:
     vertices, polygons = mesh_io.read_mesh(arguments.input)
     sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
+    curve_counts = None if arguments.curve_counts is None else mesh_io.read_counts(arguments.curve_counts)
     density = _numbers(arguments.density, 1, len(vertices))
     frames = _numbers(arguments.frames, 6, len(vertices))
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
@@ -201,6 +208,7 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
             polygons,
             options,
             sharp_edges=sharp_edges,
+            curve_counts=curve_counts,
             density=None if density is None else density.reshape(-1),
             frames=None if frames is None else frames.reshape(-1, 2, 3),
             progress=bar.update,

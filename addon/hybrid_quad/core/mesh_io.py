@@ -143,6 +143,28 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
     return np.array(pairs, np.int64).reshape(-1, 2)  # type: ignore[return-value]
 
 
+def read_counts(path: str | os.PathLike[str]) -> list[tuple[list[int], int]]:
+    """Paths with a number from a text file: the number, then 0-based vertex indices, in one line; ``#`` starts a comment.
+
+    Raises
+    ------
+    MeshFileError
+        If a line holds anything else; names the line.
+    """
+    path = Path(path)
+    counts = []
+    for number, line in enumerate(_read_text(path).splitlines(), 1):
+        tokens = line.partition("#")[0].split()
+        if not tokens:
+            continue
+        try:
+            count, *vertices = (int(token) for token in tokens)
+        except ValueError:
+            raise MeshFileError(f"{path}: line {number} is not a number and vertex indices: {line.strip()!r}") from None
+        counts.append((vertices, count))
+    return counts
+
+
 def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:
     """(k, width) numbers from a text file, `width` a line; ``#`` starts a comment.
 

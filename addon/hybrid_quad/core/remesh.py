@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import native, report
+from .curve_counts import CurveCount, as_curve_counts
 from .errors import InputError
 from .mesh_arrays import (
     FacesLike,
@@ -69,6 +70,7 @@ def remesh(
     edge_length: float | None = None,
     sharp_angle: float | None = 40.0,
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
     density: npt.ArrayLike | None = None,
     frames: npt.ArrayLike | None = None,
@@ -106,6 +108,11 @@ def remesh(
         Edges whose faces' normals differ by more than this many degrees are features; ``None`` takes none.
     sharp_edges : (k, 2) int, optional
         Vertex pairs that are features whatever their angle. Each must be an edge of a face.
+    curve_counts : sequence of (path, count), optional
+        Chains of edges that are to get exactly `count` quad edges: `path` lists 0-based vertices, each joined to the next by
+        an edge of a face; a loop repeats its first vertex. They become features, the ends of open ones corners. No edge in
+        two of them. What cannot be met (loops of quads have an even number of edges) gets the nearest number that can, and
+        a warning; the report's ``curve_counts`` lists all.
     guides : (n, 3) or (m, 3) float, optional
         Directions that edges should take at the n vertices or m faces, in the coordinates of `vertices`; a direction, its
         opposite and those across it are the same. Zero: free; the length is the strength, and cut at 1. Where there are
@@ -185,6 +192,7 @@ def remesh(
         faces,
         options,
         sharp_edges=sharp_edges,
+        curve_counts=curve_counts,
         guides=guides,
         density=density,
         frames=frames,
@@ -201,6 +209,7 @@ def remesh_with_options(
     options: RemeshOptions,
     *,
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
+    curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
     density: npt.ArrayLike | None = None,
     frames: npt.ArrayLike | None = None,
@@ -222,6 +231,7 @@ def remesh_with_options(
         polygons.sizes,
         polygons.vertices,
         sharp_edges=marked,
+        curve_counts=as_curve_counts(curve_counts),
         **wishes,
         progress=progress,
         cancel=cancel,

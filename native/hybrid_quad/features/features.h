@@ -12,6 +12,7 @@ struct FeatureCurve {
   std::vector<int> vertices;  ///< in order; a closed curve repeats its first vertex at the end
   bool closed = false;        ///< no node on it (a loop through one node is not `closed`: it starts and ends at that node)
   bool boundary = false;      ///< runs along the surface's boundary
+  int asked_count = 0;        ///< quad edges that it is to get, exactly; 0: as many as fit
 };
 
 /// Feature and boundary edges of a mesh, as curves between corners (paper 2.5, 3.2; MATH #9).

@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/edge_bisection.h"
 
 #include <algorithm>
+#include <map>
 #include <queue>
 
 #include "hybrid_quad/mesh/editable_mesh.h"
@@ -9,18 +10,22 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr int kMarked = 0;
+constexpr int kMarked = 0;  ///< chain i: kMarked + 1 + i
 
 std::array<int, 2> sorted_pair(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// kMarked on the half-edges of marked edges, -1 elsewhere.
-std::vector<int> marks_of(const TriangleMesh& mesh, const std::vector<std::array<int, 2>>& marked_edges) {
-  std::vector<std::array<int, 2>> sorted;
-  for (const auto& e : marked_edges) sorted.push_back(sorted_pair(e[0], e[1]));
-  std::sort(sorted.begin(), sorted.end());
+/// On half-edges of marked edges and chains which of these they are, -1 elsewhere.
+std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges, const std::vector<EdgeSet>& chains) {
+  std::map<std::array<int, 2>, int> mark_of;
+  for (const auto& e : marked_edges) mark_of[sorted_pair(e[0], e[1])] = kMarked;
+  for (std::size_t i = 0; i < chains.size(); ++i)
+    for (const auto& e : chains[i]) mark_of[sorted_pair(e[0], e[1])] = kMarked + 1 + static_cast<int>(i);
   std::vector<int> marks(mesh.halfedge_count(), -1);
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (std::binary_search(sorted.begin(), sorted.end(), sorted_pair(mesh.from(h), mesh.to(h)))) marks[h] = kMarked;
+  if (mark_of.empty()) return marks;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const auto found = mark_of.find(sorted_pair(mesh.from(h), mesh.to(h)));
+    if (found != mark_of.end()) marks[h] = found->second;
+  }
   return marks;
 }
 
@@ -34,8 +39,9 @@ struct LongEdge {
 
 }  // namespace
 
-BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const std::vector<std::array<int, 2>>& marked_edges) {
-  EditableMesh edited(mesh, marks_of(mesh, marked_edges));
+BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
+                               const std::vector<EdgeSet>& chains) {
+  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains));
   std::priority_queue<LongEdge> queue;
   const auto push = [&](int h) {
     const double squared = edited.edge_vector(h).squaredNorm();
@@ -56,9 +62,13 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const s
   }
   EditableMesh::Compacted compacted = edited.compacted();
   BisectedMesh out;
-  for (int h = 0; h < compacted.mesh.halfedge_count(); ++h)
-    if (compacted.halfedge_curve[h] == kMarked && compacted.mesh.opposite(h) < h)
-      out.marked_edges.push_back({compacted.mesh.from(h), compacted.mesh.to(h)});
+  out.chains.resize(chains.size());
+  for (int h = 0; h < compacted.mesh.halfedge_count(); ++h) {
+    const int mark = compacted.halfedge_curve[h];
+    if (mark < 0 || compacted.mesh.opposite(h) >= h) continue;
+    out.marked_edges.push_back({compacted.mesh.from(h), compacted.mesh.to(h)});
+    if (mark > kMarked) out.chains[mark - kMarked - 1].push_back(out.marked_edges.back());
+  }
   out.mesh = std::move(compacted.mesh);
   return out;
 }

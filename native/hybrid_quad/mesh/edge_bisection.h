@@ -7,14 +7,18 @@
 
 namespace hybrid_quad {
 
+using EdgeSet = std::vector<std::array<int, 2>>;  ///< pairs of neighbouring vertices
+
 struct BisectedMesh {
-  TriangleMesh mesh;                            ///< vertices keep their ids, new ones follow
-  std::vector<std::array<int, 2>> marked_edges;  ///< the parts of the marked edges
+  TriangleMesh mesh;             ///< vertices keep their ids, new ones follow
+  EdgeSet marked_edges;          ///< the parts of the marked edges and of the chains'
+  std::vector<EdgeSet> chains;   ///< the parts of each
 };
 
 /// The same surface with no edge longer than `longest`: edges are halved, longest first (Rivara 1984), so that what is
 /// known at vertices is known everywhere.
-/// \param marked_edges  pairs of neighbouring vertices
-BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const std::vector<std::array<int, 2>>& marked_edges);
+/// \param chains  sets of edges, no edge in two of them, that are marked too but told apart
+BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
+                               const std::vector<EdgeSet>& chains = {});
 
 }  // namespace hybrid_quad

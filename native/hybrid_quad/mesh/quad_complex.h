@@ -54,7 +54,8 @@ struct ComplexRepairReport {
 /// then double edges, edges that are loops and border loops shorter than four, by splitting polychords or,
 /// where a strip would be long, by a local change. Topology, feature chains and corners stay. \throws
 /// InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
-ComplexRepairReport repair_complex(QuadComplex& complex);
+/// \param counted  #curves, or empty: those whose number of edges should stay; strips across them are split last
+ComplexRepairReport repair_complex(QuadComplex& complex, const std::vector<char>& counted = {});
 
 /// Vertices and quads keep their numbers. A feature edge is listed once, in the direction of its dart of
 /// lower number. \pre no violation an indexed mesh could not hold (repair_complex)

@@ -101,10 +101,15 @@ Defects find_defects(const QuadComplex& c) {
 /// Which polychords to split for a set of defects, as few quads as a greedy choice finds.
 class PolychordChoice {
  public:
-  PolychordChoice(const QuadComplex& complex, const Defects& defects)
+  PolychordChoice(const QuadComplex& complex, const Defects& defects, const std::vector<char>& counted)
       : polychords_(trace_polychords(complex)),
         chosen_(polychords_.length.size(), 0),
         use_(polychords_.length.size(), 0) {
+    // As long as any strip can be: chosen where nothing else will do.
+    if (!counted.empty())
+      for (std::size_t d = 0; d < complex.curve.size(); ++d)
+        if (complex.curve[d] >= 0 && counted[complex.curve[d]])
+          polychords_.length[polychords_.of_dart[d]] += 2 * complex.quad_count();
     std::vector<int> last(use_.size(), -1);
     for (int g = 0; g < static_cast<int>(defects.double_edges.size()); ++g)
       for (const int d : defects.double_edges[g]) {
@@ -188,13 +193,13 @@ int restar_double_edges(QuadComplex& complex, const Defects& defects) {
 
 }  // namespace
 
-ComplexRepairReport repair_complex(QuadComplex& complex) {
+ComplexRepairReport repair_complex(QuadComplex& complex, const std::vector<char>& counted) {
   ComplexRepairReport report;
   fix_low_valences(complex, report);
   for (int round = 0; round < kMostRounds; ++round) {
     const Defects defects = find_defects(complex);
     if (defects.empty()) return report;
-    PolychordChoice choice(complex, defects);
+    PolychordChoice choice(complex, defects, counted);
     const bool local = round < kLocalRounds;
     for (const int d : defects.loop_edges) choice.choose_at(d);
     for (const auto& loop : defects.short_borders) choice.choose_shortest(loop);

@@ -1,12 +1,24 @@
 #include "hybrid_quad/mesh/straight_quads.h"
 
 #include <array>
+#include <limits>
 
 #include "hybrid_quad/mesh/polychords.h"
 
 namespace hybrid_quad {
 
 namespace {
+
+/// Quads around the origin of dart d; none is too few on the border.
+int quads_at(const QuadComplex& c, int d) {
+  int count = 0, at = d;
+  do {
+    ++count;
+    at = c.opposite[QuadComplex::previous(at)];
+    if (at < 0) return std::numeric_limits<int>::max();
+  } while (at != d);
+  return count;
+}
 
 /// The free side of a quad with three straight feature sides, or -1.
 int free_side(const QuadComplex& c, int q) {
@@ -20,6 +32,9 @@ int free_side(const QuadComplex& c, int q) {
   // The vertices between the three feature sides are those that the free side does not touch.
   for (const int d : {QuadComplex::next(QuadComplex::next(side)), QuadComplex::previous(side)})
     if (c.kind[c.from(d)] != VertexKind::kCurve) return -1;
+  // The ends of the free side lose a quad each.
+  for (const int d : {side, QuadComplex::next(side)})
+    if (quads_at(c, d) < 4) return -1;
   return side;
 }
 

@@ -1,5 +1,6 @@
 #include "hybrid_quad/periodic_field/grid_measure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hybrid_quad/periodic_field/narrow_strips.h"
@@ -35,7 +36,8 @@ double fewest_edges(const FeatureCurve& curve) {
   return returns ? 4.0 : 1.0;
 }
 
-void stretch_short_curves(const TriangleMesh& mesh, const FeatureGraph& features, GridMeasure& measure) {
+/// Curves too short for the edges that they need, and those that are to get a certain number.
+void stretch_curves(const TriangleMesh& mesh, const FeatureGraph& features, GridMeasure& measure) {
   std::vector<double> length(features.curves.size(), 0.0);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h))
@@ -43,8 +45,9 @@ void stretch_short_curves(const TriangleMesh& mesh, const FeatureGraph& features
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     if (measure.axis[h] < 0) continue;
     const int curve = features.halfedge_curve[h];
-    const double fewest = fewest_edges(features.curves[curve]);
-    if (length[curve] > 0 && length[curve] < fewest) measure.along[h] *= fewest / length[curve];
+    const int asked = features.curves[curve].asked_count;
+    const double count = asked > 0 ? asked : std::max(length[curve], fewest_edges(features.curves[curve]));
+    if (length[curve] > 0 && length[curve] != count) measure.along[h] *= count / length[curve];
   }
 }
 
@@ -64,7 +67,7 @@ GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frame
   widen_narrow_strips(mesh, frames, measure);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h)) align_feature_edge(mesh, frames, h, measure);
-  stretch_short_curves(mesh, surface.features, measure);
+  stretch_curves(mesh, surface.features, measure);
   return measure;
 }
 

@@ -9,6 +9,7 @@
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/count_search.h"
+#include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
@@ -42,6 +43,7 @@ struct Extraction {
   double singular_area = 0, combinatorial_area = 0;
   RepairRecord repairs;
   int flawed = 0;            ///< quads, after improvement
+  int missed = 0;            ///< missed_counts()
   double count_error = 0;    ///< | log(count / asked) |, after improvement
 };
 
@@ -115,11 +117,15 @@ class ComponentRemesher {
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex index(mesh_, plan_.features.face_region);
-    CountSearch search(plan_.quads);
+    // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
+    constexpr double kLeastBesideCounts = 0.6;
+    const auto& curves = plan_.features.curves;
+    const bool counted = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
+    CountSearch search(plan_.quads, counted ? kLeastBesideCounts * plan_.quads : 0);
     Extraction best;
     bool any = false;
     for (int i = 0; i < kTries; ++i) {
-      const bool last = i + 1 == kTries;
+      const bool last = i + 1 == kTries || search.at_least();
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
       // What is as far off as that needs no improving, unless it is all there is.
@@ -128,9 +134,11 @@ class ComponentRemesher {
         make_mirrorable(index, current.mesh);
         count = static_cast<double>(current.mesh.quads.size());
         current.count_error = search.error(count);
-        if (!any || std::tie(current.flawed, current.count_error) < std::tie(best.flawed, best.count_error)) best = std::move(current);
+        current.missed = missed_counts(plan_.features, current.mesh);
+        const auto rank = [](const Extraction& e) { return std::make_tuple(e.flawed, e.missed, e.count_error); };
+        if (!any || rank(current) < rank(best)) best = std::move(current);
         any = true;
-        if (best.flawed == 0 && best.count_error < tolerance) break;
+        if (last || (best.flawed == 0 && best.count_error < tolerance)) break;
       }
       search.record(count);
     }
@@ -144,6 +152,7 @@ class ComponentRemesher {
     result_.singular_area = best.singular_area;
     result_.combinatorial_area = best.combinatorial_area;
     result_.repairs += best.repairs;
+    result_.missed_counts = best.missed;
     result_.mesh = std::move(best.mesh);
   }
 
@@ -197,7 +206,9 @@ class ComponentRemesher {
       require_sound("assemble", violations_of(complex));
       if (euler_characteristic(complex) != mesh_.euler_characteristic())
         throw InternalError("assemble", "the quads have another topology than the surface");
-      const ComplexRepairReport repair = repair_complex(complex);
+      std::vector<char> counted;
+      for (const FeatureCurve& curve : plan_.features.curves) counted.push_back(curve.asked_count > 0);
+      const ComplexRepairReport repair = repair_complex(complex, counted);
       out.repairs.released_quads = singular.released_cells;
       out.repairs.removed_quads = repair.cancelled_singlets + repair.merged_doublets;
       out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
@@ -284,10 +295,10 @@ class ComponentRemesher {
 
 namespace {
 
-/// Flawed quads, each the worse the more quads were spent; doubtful ones only where there are none.
+/// Flawed quads, each the worse the more quads were spent; missed counts only where there are none, then doubtful ones.
 double badness(const ComponentResult& result) {
   const double quads = static_cast<double>(result.mesh.quads.size());
-  return (result.flawed_quads + 1e-6 * result.doubtful_quads) * quads;
+  return (result.flawed_quads + 1e-4 * result.missed_counts + 1e-8 * result.doubtful_quads) * quads;
 }
 
 }  // namespace
@@ -313,7 +324,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       else
         best.passes = result.passes;
       any = true;
-      if (best.doubtful_quads == 0) break;
+      if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
     } catch (const InternalError& error) {
       broken = error.what();
       ++best.passes;

@@ -18,7 +18,7 @@ void CountSearch::record(double got) {
     slope = std::clamp((nearest->got - now.got) / (nearest->asked - now.asked), kLeastSlope, kMostSlope);
   const Sample from = nearest != samples_.end() && std::abs(nearest->got) < std::abs(now.got) ? *nearest : now;
   samples_.push_back(now);
-  next_ = wanted_ * std::exp(from.asked + std::clamp(-from.got / slope, -kLongestStep, kLongestStep));
+  next_ = std::max(least_, wanted_ * std::exp(from.asked + std::clamp(-from.got / slope, -kLongestStep, kLongestStep)));
 }
 
 }  // namespace hybrid_quad

@@ -8,9 +8,11 @@ namespace hybrid_quad {
 /// improvement make fewer or more of them. Secant steps in the logarithms.
 class CountSearch {
  public:
-  explicit CountSearch(double wanted) : wanted_(wanted), next_(wanted) {}
+  /// \param least  fewer are never asked for
+  explicit CountSearch(double wanted, double least = 0) : wanted_(wanted), least_(least), next_(wanted) {}
 
   double next() const { return next_; }  ///< to ask for
+  bool at_least() const { return next_ <= least_; }
   /// What came out of asking for next().
   void record(double got);
   /// | log(got / wanted) |
@@ -20,7 +22,7 @@ class CountSearch {
   struct Sample {
     double asked, got;  // logarithms, of the wanted number's
   };
-  double wanted_, next_;
+  double wanted_, least_, next_;
   std::vector<Sample> samples_;
 };
 

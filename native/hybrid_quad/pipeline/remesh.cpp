@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -136,6 +137,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   const BuiltMesh built = clock.measure("mesh", [&] {
     context.in_stage("mesh", 0, 0.02).checkpoint();
     check_wishes(soup, options);
+    check_curve_counts(soup, options.curve_counts);
     return build_mesh(soup);
   });
   report.defects = built.defects;
@@ -155,6 +157,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
   std::vector<std::vector<std::array<int, 2>>> marked;
+  CurveCountLedger counts(options.curve_counts, soup, images);
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
@@ -167,7 +170,9 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * weighted_area / std::max(1, options.quads));
     wanted = images * weighted_area / (length * length);
     for (std::size_t i = 0; i < components.size(); ++i)
-      plans.push_back(plan_component(components[i].mesh, length, marked[i], wishes[i], domain.options, plan_context));
+      plans.push_back(plan_component(components[i].mesh, length, marked[i],
+                                     counts.chains_on(components[i].mesh, components[i].face, domain.counted_curve), wishes[i],
+                                     domain.options, plan_context));
     if (!(options.edge_length > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
   });
 
@@ -180,6 +185,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
     parts.push_back(remesh_component(plans[i], whole, wishes[i], domain.options, clock, part_context));
+    counts.record(plans[i], parts.back().mesh);
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex) input_vertex.push_back(domain.input_vertex[v]);
     append(result, whole_of(parts.back(), plans[i], components[i].mesh, marked[i], domain.options), parts.back(), input_vertex, images);
@@ -196,6 +202,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
                               ": features or small parts need another number");
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
+  report.curve_counts = counts.records();
+  for (std::string& warning : warnings_of(report.curve_counts)) report.warnings.push_back(std::move(warning));
   if (images > 1) {
     for (std::string& warning : symmetry_warnings(domain, built.mesh, result.mesh)) report.warnings.push_back(std::move(warning));
     const std::vector<std::string> violations = violations_of(result.mesh);

@@ -19,6 +19,13 @@ struct SymmetryOptions {
   double tolerance = 0.25;  ///< largest deviation that counts as symmetric, in percent of the diagonal
 };
 
+/// A path of input vertices, each joined to the next by an edge of a polygon, along which the result is to have exactly
+/// `count` quad edges. A loop repeats its first vertex at the end.
+struct CurveCount {
+  std::vector<int> vertices;
+  int count = 0;
+};
+
 struct RemeshOptions {
   int quads = 5000;                ///< asked number of quads (ignored where edge_length > 0)
   double edge_length = 0;          ///< asked quad edge length (scene units)
@@ -33,6 +40,8 @@ struct RemeshOptions {
   /// Frames: the two edge vectors of a quad, in usual edge lengths; neither equal nor orthogonal they need to be. Two zero
   /// vectors: free. By vertex or polygon, as guides.
   std::vector<std::array<Vector3, 2>> vertex_frames, face_frames;
+  /// Their edges are features whatever their angle, and the ends of open ones corners. No edge in two of them.
+  std::vector<CurveCount> curve_counts;
   double field_smoothness = 0.5;   ///< 0: edges follow the surface's bends, 1: as few singularities as can be
   double adaptivity = 0;           ///< 0: even, 1: edges as short as the surface's curvature asks for
   double anisotropy = 1;           ///< most by which quads are stretched along the direction that bends less
@@ -79,6 +88,13 @@ struct SymmetryRecord {
   std::array<PlaneDeviation, 3> deviation;
 };
 
+/// What became of one of options.curve_counts.
+struct CurveCountRecord {
+  int asked = 0;
+  int got = 0;         ///< 0: nothing of it is on the remeshed part of the surface
+  std::string reason;  ///< why it is another number; empty where it is not
+};
+
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
@@ -95,6 +111,7 @@ struct RemeshReport {
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features
   SymmetryRecord symmetry;
+  std::vector<CurveCountRecord> curve_counts;  ///< as options.curve_counts
   std::vector<StageRecord> stages;       ///< summed over components and passes
   std::vector<std::string> warnings;
   std::vector<Defect> defects;           ///< of the input, repaired on the way

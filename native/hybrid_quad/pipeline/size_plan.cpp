@@ -40,10 +40,26 @@ std::vector<double> stretched(const ComponentPlan& plan, double factor) {
   return longer;
 }
 
+/// Lets curves that are to get more quads than fit have shorter ones. Longer ones need no finer triangles: the frames
+/// see to that.
+void shorten_for_counts(ComponentPlan& plan) {
+  bool any = false;
+  for (const FeatureCurve& curve : plan.features.curves) {
+    if (curve.asked_count <= 0) continue;
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
+      length += (plan.mesh.position(curve.vertices[i + 1]) - plan.mesh.position(curve.vertices[i])).norm();
+    for (const int v : curve.vertices) plan.target[v] = std::min(plan.target[v], length / curve.asked_count);
+    any = true;
+  }
+  if (any) grade_lengths(plan.mesh, *std::max_element(plan.target.begin(), plan.target.end()), plan.target);
+}
+
 }  // namespace
 
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
-                             const Wishes& wishes, const RemeshOptions& options, const RunContext& context) {
+                             const std::vector<CountedChain>& chains, const Wishes& wishes,
+                             const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
   constexpr double kLongestEdge = 0.8, kNearEnough = 0.01;
@@ -52,19 +68,28 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
   plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / least_quads(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
   const double longest = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
-  BisectedMesh fine = bisect_long_edges(mesh, longest, marked);
+  std::vector<EdgeSet> chain_edges;
+  for (const CountedChain& chain : chains) chain_edges.push_back(chain.edges);
+  BisectedMesh fine = bisect_long_edges(mesh, longest, marked, chain_edges);
   context.checkpoint();
   plan.mesh = std::move(fine.mesh);
   FeatureOptions features = feature_options(options, plan.length);
   features.marked_edges = std::move(fine.marked_edges);
   features.corners = seam_ends(plan.mesh, options.symmetry.planes);
+  std::vector<CountedChain> fine_chains = chains;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    fine_chains[i].edges = std::move(fine.chains[i]);
+    for (const int v : chain_ends(fine_chains[i])) features.corners.push_back(v);
+  }
   plan.features = detect_features(plan.mesh, features, context);
+  plan.chains = plan_curve_counts(plan.mesh, fine_chains, plan.features);
   plan.curve_planes = seam_planes(plan.mesh, plan.features, options.symmetry.planes);
   const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < density.size(); ++v) plan.unlimited[v] = plan.length / density[v];
   plan.target =
       asked_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, density, FeatureSizeOptions{}, context);
+  shorten_for_counts(plan);
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
   return plan;
 }

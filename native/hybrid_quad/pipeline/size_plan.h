@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "hybrid_quad/features/features.h"
+#include "hybrid_quad/features/curve_counts.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/wishes.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -15,6 +15,7 @@ struct ComponentPlan {
   TriangleMesh mesh;            ///< the component with long edges halved: the same surface, old vertices first
   FeatureGraph features;
   std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
+  std::vector<PlannedChain> chains;    ///< as given: what their curves are to get
   double length = 0;            ///< asked edge length at density 1, where nothing limits it (scene units)
   std::vector<double> unlimited;  ///< #V: asked edge length where nothing limits it
   std::vector<double> target;   ///< #V: asked edge length
@@ -23,8 +24,10 @@ struct ComponentPlan {
 
 /// \param length  edge length asked for; a component too small for it gets a shorter one
 /// \param marked  pairs of the component's vertices that are features
+/// \param chains  edges of the component that are to get certain numbers of quads
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
-                             const Wishes& wishes, const RemeshOptions& options, const RunContext& context);
+                             const std::vector<CountedChain>& chains, const Wishes& wishes,
+                             const RemeshOptions& options, const RunContext& context);
 
 /// Small features and thin parts need shorter edges than was asked: lengthens the others, in all components alike and by
 /// no more than three fifths, until as many quads fit as were asked for.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
@@ -67,9 +68,11 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, Pla
   domain.options = options;
   domain.options.symmetry.planes = planes;
   const std::vector<char> is_marked = marked_halfedges(built, options.marked_edges);
+  const std::vector<int> counted = counted_halfedges(built, options.curve_counts);
   if (planes == 0) {
     domain.mesh = built.mesh;
     domain.is_marked = is_marked;
+    domain.counted_curve = counted;
     domain.input_vertex = domain.values.input_vertex = built.input_vertex;
     domain.values.input_face = built.input_face;
     return domain;
@@ -79,7 +82,10 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, Pla
     domain.values.input_vertex.push_back(static_cast<int>(domain.input_vertex.size()));
     domain.input_vertex.push_back(origin.is_vertex() ? built.input_vertex[origin.vertex[0]] : -1);
   }
-  for (const int h : part.halfedge) domain.is_marked.push_back(h >= 0 && is_marked[h]);
+  for (const int h : part.halfedge) {
+    domain.is_marked.push_back(h >= 0 && is_marked[h]);
+    domain.counted_curve.push_back(h >= 0 ? counted[h] : -1);
+  }
   for (const int f : part.face) domain.values.input_face.push_back(built.input_face[f]);
   take_nearest(part, built, domain.options.vertex_guides);
   take_nearest(part, built, domain.options.vertex_frames);

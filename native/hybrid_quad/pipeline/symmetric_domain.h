@@ -15,6 +15,7 @@ struct RemeshDomain {
   TriangleMesh mesh;
   std::vector<int> input_vertex;  ///< #V: polygon-soup vertex, -1 for one that a mirror plane made
   std::vector<char> is_marked;    ///< 3 #F: on an edge marked as a feature
+  std::vector<int> counted_curve; ///< 3 #F: on this one of options.curve_counts, or -1
   RemeshOptions options;          ///< with the planes that are used
   BuiltMesh values;               ///< no mesh: where in the arrays of `options` the values of a vertex and a face are
   int faces_in_plane = 0;         ///< left out

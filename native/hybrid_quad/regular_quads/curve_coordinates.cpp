@@ -57,7 +57,7 @@ class CurveBuilder {
         // Every curve of the loop is met at its first edge once on each pass along it.
         if (out_.halfedge_index[h] == 0) {
           total += count_of(c);
-          if (longest < 0 || length_of(c) > length_of(longest)) longest = c;
+          if (longest < 0 || gives_way_before(c, longest)) longest = c;
         }
         int n = TriangleMesh::next(h);
         while (!surface_.features.is_feature(n)) n = TriangleMesh::next(mesh.opposite(n));
@@ -85,6 +85,12 @@ class CurveBuilder {
 
  private:
   std::int64_t count_of(int c) const { return (out_.curves[c].position.back() - out_.curves[c].position.front()) / kGridUnit; }
+
+  /// A curve with an asked count is widened only where there is no other.
+  bool gives_way_before(int c, int other) const {
+    const bool fixed = surface_.features.curves[c].asked_count > 0, other_fixed = surface_.features.curves[other].asked_count > 0;
+    return fixed != other_fixed ? other_fixed : length_of(c) > length_of(other);
+  }
 
   double length_of(int c) const {
     const std::vector<int>& vertices = surface_.features.curves[c].vertices;
@@ -135,9 +141,11 @@ class CurveBuilder {
     const int n = static_cast<int>(s.size()) - 1;
     std::int64_t last = s[0] + round_to_grid(s[n] - s[0]);
     const std::int64_t least = (curve.closed ? 4 : 1) * kGridUnit;
-    if (last - s[0] < least) {
-      const bool odd = ((last - s[0]) / kGridUnit) & 1;
-      const std::int64_t count = curve.closed ? 4 : (odd ? 1 : 2);
+    const std::int64_t found = (last - s[0]) / kGridUnit;
+    // Only an asked count of the parity that Psi's corners have can be had.
+    const bool is_asked = curve.asked_count > 0 && (curve.asked_count - found) % 2 == 0;
+    if (last - s[0] < least || (is_asked && found != curve.asked_count)) {
+      const std::int64_t count = is_asked ? curve.asked_count : curve.closed ? 4 : (found & 1) ? 1 : 2;
       last = s[0] + count * kGridUnit;
       ++out_.altered_counts;
       interpolate(s, 0, n, last);

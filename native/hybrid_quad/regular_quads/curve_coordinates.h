@@ -23,7 +23,7 @@ struct CurveCoordinates {
 
 /// The tangential coordinate of the parameterization where it increases along the curve, arc length between the nearest
 /// sound vertices where it does not. A curve between corners has at least one quad edge, a closed one at least four (an
-/// even number); the parity is that of its ends.
+/// even number); the parity is that of its ends. Where that allows it, a curve with an asked count gets exactly that many.
 CurveCoordinates build_curve_coordinates(const WorkingSurface& surface, const FrameField& frames,
                                          const SpanningParameterization& param);
 

@@ -5,19 +5,9 @@
 
 #include "hybrid_quad/frame_field/frame_topology.h"
 #include "hybrid_quad/numerics/sparse_solve.h"
+#include "hybrid_quad/sizing/cotangent.h"
 
 namespace hybrid_quad {
-
-namespace {
-
-/// Cotangent of the corner opposite to half-edge h.
-double cotangent(const TriangleMesh& mesh, int h) {
-  const Vector3 a = mesh.edge_vector(TriangleMesh::previous(h)), b = -mesh.edge_vector(TriangleMesh::next(h));
-  const double sine = a.cross(b).norm(), cosine = a.dot(b);
-  return sine > 0 ? std::clamp(cosine / sine, -1e3, 1e3) : 0;
-}
-
-}  // namespace
 
 std::vector<double> conformal_length_factor(const WorkingSurface& surface, const FrameField& field, double clip,
                                             const RunContext& context) {

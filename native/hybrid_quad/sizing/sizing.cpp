@@ -4,6 +4,7 @@
 
 #include "hybrid_quad/sizing/conformal_scale.h"
 #include "hybrid_quad/sizing/curl_correction.h"
+#include "hybrid_quad/sizing/curve_count_scale.h"
 
 namespace hybrid_quad {
 
@@ -67,6 +68,16 @@ double area_in_quads(const TriangleMesh& mesh, const FrameField& field) {
   return sum;
 }
 
+/// Makes the area in quads what was asked.
+void scale_to_quads(const TriangleMesh& mesh, double quads, FrameField& field) {
+  const double scale = std::sqrt(quads / area_in_quads(mesh, field));
+  if (!std::isfinite(scale) || !(scale > 0)) return;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    field.du[f] *= scale;
+    field.dv[f] *= scale;
+  }
+}
+
 double asked_quads(const WorkingSurface& surface) {
   double sum = 0;
   for (int f = 0; f < surface.mesh.face_count(); ++f)
@@ -86,6 +97,12 @@ SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_f
   if (options.conformal)
     length_factor = conformal_length_factor(surface, unit_frames, options.conformal_clip, context);
   scale_to_target(surface, length_factor, options.stretch, sized.field);
+  const double quads = quads_asked > 0 ? quads_asked : asked_quads(surface);
+  const CurveCountScale counts(surface);
+  if (!counts.is_idle()) {
+    scale_to_quads(mesh, quads, sized.field);
+    counts.apply(sized.field, context);
+  }
   if (options.correct_curl) {
     CurlCorrectionOptions correction;
     correction.curl_weight = options.curl_weight;
@@ -94,13 +111,8 @@ SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_f
     const auto x = curl_correction(surface, sized.field, correction, context);
     apply_correction(mesh, x, sized);
   }
-  const double quads = quads_asked > 0 ? quads_asked : asked_quads(surface);
-  const double scale = std::sqrt(quads / area_in_quads(mesh, sized.field));
-  if (std::isfinite(scale) && scale > 0)
-    for (int f = 0; f < mesh.face_count(); ++f) {
-      sized.field.du[f] *= scale;
-      sized.field.dv[f] *= scale;
-    }
+  scale_to_quads(mesh, quads, sized.field);
+  counts.apply(sized.field, context);
   context.checkpoint(1);
   return sized;
 }

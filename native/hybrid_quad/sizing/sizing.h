@@ -24,7 +24,7 @@ struct SizedFrames {
 };
 
 /// Scales the unit frames to the surface's target lengths, corrects their curl, and rescales so that the area measured
-/// in quads is what was asked (integral of 1 / h^2).
+/// in quads is what was asked (integral of 1 / h^2). Around curves with an asked count, frames are as long as that takes.
 /// \param quads_asked  number of quads the whole surface should get; <= 0: from target lengths
 SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_frames, double quads_asked,
                          const SizingOptions& options, const RunContext& context);

@@ -15,9 +15,6 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Partners tried for a dislocation that cannot go anywhere alone, and how often that is tried.
-constexpr int kPartners = 8;
-constexpr int kMostMerges = 200;
 
 enum class MoveEnd { kNone, kFace, kCone, kBoundary };
 
@@ -52,7 +49,6 @@ class Canceller {
   Canceller(const SpanningOptions& options, const RunContext& context, MovableGrid& grid)
       : mesh_(grid.mesh()), frames_(grid.frames()), options_(options), context_(context), grid_(grid) {
     const int n = mesh_.face_count();
-    longest_ = grid.longest_way();
     distance_.assign(n, 0);
     arrived_.resize(n);
     over_.assign(n, -1);
@@ -66,7 +62,6 @@ class Canceller {
     for (int f = 0; f < mesh_.face_count(); ++f)
       if (!is_zero(grid_.burgers(f))) enqueue(f);
     drain();
-    for (int merges = 0; merges < kMostMerges && merge_once(); ++merges) drain();
   }
 
  private:
@@ -101,8 +96,9 @@ class Canceller {
   }
 
   /// Shortest paths on the dual graph from `source`, the Burgers vector carried along, until nothing cheaper
-  /// can come. \param visit  called with every settled face; may be empty
-  Move search(int source, const IntVector2& burgers, double limit, const std::function<void(int)>& visit) {
+  /// can come.
+  Move search(int source, const IntVector2& burgers) {
+    const double limit = grid_.longest_way(source);
     Move best;
     best.source = source;
     best.burgers = burgers;
@@ -126,7 +122,6 @@ class Canceller {
       if (settled_[t] == stamp_) continue;
       if (d > limit || d >= best.cost) break;
       settled_[t] = stamp_;
-      if (visit) visit(t);
       look_for_end(t, t == source, best);
       if ((++steps_ & 0x3fff) == 0) context_.checkpoint(0.4);
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
@@ -184,7 +179,7 @@ class Canceller {
     const int version = ++version_[f][phase];
     const IntVector2 unit = unit_part(grid_.burgers(f), phase);
     if (is_zero(unit) || steps_ > budget_) return;
-    Move move = search(f, unit, longest_, {});
+    Move move = search(f, unit);
     if (move.end == MoveEnd::kNone) return;
     move.phase = phase;
     move.version = version;
@@ -213,75 +208,11 @@ class Canceller {
     }
   }
 
-  struct Meeting {
-    int face = -1;
-    double distance = 0;
-    IntVector2 burgers{0, 0};
-    std::vector<int> crossed;
-  };
-
-  /// Other dislocations within reach of the unit, nearest first; its own face counts.
-  std::vector<Meeting> meetings(int f, const IntVector2& unit) {
-    std::vector<Meeting> found;
-    search(f, unit, longest_, [&](int t) {
-      if (!is_zero(grid_.burgers(t)) && static_cast<int>(found.size()) < kPartners)
-        found.push_back(Meeting{t, distance_[t], arrived_[t], {}});
-    });
-    for (Meeting& m : found) m.crossed = path_to(m.face);
-    return found;
-  }
-
-  /// Two dislocations that meet and go on together.
-  struct Merger {
-    double cost = kNever;
-    int source = -1;
-    IntVector2 unit{0, 0};
-    Meeting meeting;
-    Move move;
-  };
-
-  /// What the unit at face f could do together with either unit part at the meeting's face.
-  void try_meeting(int f, const IntVector2& unit, const Meeting& meeting, Merger& best) {
-    for (int phase = 0; phase < 2; ++phase) {
-      const IntVector2 rest = meeting.face == f ? sum(grid_.burgers(f), minus(unit)) : grid_.burgers(meeting.face);
-      const IntVector2 partner = unit_part(rest, phase);
-      if (is_zero(partner) || meeting.distance >= best.cost) continue;
-      const IntVector2 both = sum(meeting.burgers, partner);
-      // Only (2, 0) and (0, 2) slide along features.
-      if (unit_count(both) != 2 || (both[0] != 0 && both[1] != 0)) continue;
-      grid_.pretend(f, minus(unit));
-      Move move = search(meeting.face, both, best.cost - meeting.distance, {});
-      grid_.pretend(f, unit);
-      if (move.end == MoveEnd::kNone || meeting.distance + move.cost >= best.cost) continue;
-      best = Merger{meeting.distance + move.cost, f, unit, meeting, std::move(move)};
-    }
-  }
-
-  /// Brings two dislocations together where both at once can leave though neither can alone.
-  bool merge_once() {
-    Merger best;
-    best.cost = longest_;
-    for (int f = 0; f < mesh_.face_count(); ++f)
-      for (int phase = 0; phase < 2; ++phase) {
-        const IntVector2 unit = unit_part(grid_.burgers(f), phase);
-        if (is_zero(unit) || steps_ > budget_) continue;
-        for (const Meeting& meeting : meetings(f, unit)) try_meeting(f, unit, meeting, best);
-      }
-    if (best.source < 0 || steps_ > budget_) return false;
-    carry(best.meeting.crossed, best.unit);
-    perform(best.move);
-    enqueue(best.source);
-    enqueue(best.meeting.face);
-    if (best.move.end == MoveEnd::kFace) enqueue(best.move.end_face);
-    return true;
-  }
-
   const TriangleMesh& mesh_;
   const FrameField& frames_;
   const SpanningOptions& options_;
   const RunContext& context_;
   MovableGrid& grid_;
-  double longest_ = 0;
   std::priority_queue<Move, std::vector<Move>, LaterMove> queue_;
   // Of the search, valid where the stamp is the current one.
   std::vector<double> distance_;

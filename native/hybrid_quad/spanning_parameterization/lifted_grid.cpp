@@ -1,20 +1,18 @@
 #include "hybrid_quad/spanning_parameterization/lifted_grid.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "hybrid_quad/periodic_field/phase_graph.h"
+#include "hybrid_quad/spanning_parameterization/curve_counts.h"
 
 namespace hybrid_quad {
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kSweepsAroundCones = 10;
+constexpr int kSweepPairsAroundCones = 5;  // forwards and backwards
 constexpr double kFeatureWeight = 20;
-
-int rounded(double x) { return std::isfinite(x) && std::abs(x) < 1e9 ? static_cast<int>(std::lround(x)) : 0; }
 
 std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField& frames,
                                  const PeriodicField& field, const GridMeasure& measure, LiftedGrid& grid) {
@@ -27,10 +25,15 @@ std::vector<PhasePair> pin_cones(const WorkingSurface& surface, const FrameField
     psi[v] = projected(psi[v], GridConstraint::kCorner);
     any = true;
   }
-  if (any) {
+  const CornerSigns signs = corner_signs(surface.features, psi);
+  if (any || !signs.vertex.empty()) {
     const PhaseGraph graph =
         build_phase_graph(surface.mesh, measure, field.corner_turn, grid.constraint, kFeatureWeight);
-    relax(graph, kSweepsAroundCones, psi);
+    for (int pair = 0; pair < kSweepPairsAroundCones; ++pair) {
+      impose(signs, psi);
+      relax(graph, 2, psi);
+    }
+    impose(signs, psi);
   }
   return psi;
 }
@@ -54,18 +57,6 @@ IntVector2 nearest_jump(const Vector2& x) {
   return burgers_of({rounded(0.5 * (x[0] + x[1])), rounded(0.5 * (x[0] - x[1]))});
 }
 
-/// Sets the jump on h's side and what follows from it on the other.
-void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const IntVector2& jump,
-              LiftedGrid& grid) {
-  grid.jump[h] = jump;
-  const int o = mesh.opposite(h);
-  if (o < 0) return;
-  const Vector2 there = -turned(grid.across_half_edge(mesh, h), frames.matching[h]);
-  grid.jump[o] = {0, 0};
-  const Vector2 rest = there - grid.across_half_edge(mesh, o);
-  grid.jump[o] = {rounded(rest[0]), rounded(rest[1])};
-}
-
 void choose_jumps(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
                   LiftedGrid& grid) {
   grid.jump.assign(mesh.halfedge_count(), IntVector2{0, 0});
@@ -82,42 +73,18 @@ void choose_jumps(const TriangleMesh& mesh, const FrameField& frames, const Grid
   }
 }
 
-/// Lengthens curves that got fewer quad edges than they need, two at a time (parity is Psi's), where it hurts
-/// least.
-void lengthen_short_curves(const WorkingSurface& surface, const FrameField& frames,
-                           const GridMeasure& measure, LiftedGrid& grid) {
-  const TriangleMesh& mesh = surface.mesh;
-  const auto& curves = surface.features.curves;
-  std::vector<double> length(curves.size(), 0.0);
-  std::vector<char> is_short(curves.size(), 0);
-  std::vector<std::vector<int>> edges(curves.size());
-  const auto lifted_along = [&](int h) {
-    return along_sign(measure, h) * grid.across_half_edge(mesh, h)[measure.axis[h]];
-  };
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (measure.axis[h] >= 0 && h > mesh.opposite(h))
-      length[surface.features.halfedge_curve[h]] += lifted_along(h);
-  for (std::size_t c = 0; c < curves.size(); ++c)
-    is_short[c] = length[c] < fewest_curve_edges(curves[c]) - 0.5;
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (measure.axis[h] >= 0 && h > mesh.opposite(h) && is_short[surface.features.halfedge_curve[h]])
-      edges[surface.features.halfedge_curve[h]].push_back(h);
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    for (int guard = 0; !edges[c].empty() && length[c] < fewest_curve_edges(curves[c]) - 0.5 && guard < 1000;
-         ++guard) {
-      const auto deficit = [&](int h) { return measure.along[h].norm() - lifted_along(h); };
-      const int worst = *std::max_element(edges[c].begin(), edges[c].end(),
-                                          [&](int x, int y) { return deficit(x) < deficit(y); });
-      IntVector2 jump = grid.jump[worst];
-      jump[measure.axis[worst]] += 2 * along_sign(measure, worst);
-      set_jump(mesh, frames, worst, jump, grid);
-      length[c] += 2;
-    }
-    grid.curve_count[c] = rounded(length[c]);
-  }
-}
-
 }  // namespace
+
+void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const IntVector2& jump,
+              LiftedGrid& grid) {
+  grid.jump[h] = jump;
+  const int o = mesh.opposite(h);
+  if (o < 0) return;
+  const Vector2 there = -turned(grid.across_half_edge(mesh, h), frames.matching[h]);
+  grid.jump[o] = {0, 0};
+  const Vector2 rest = there - grid.across_half_edge(mesh, o);
+  grid.jump[o] = {rounded(rest[0]), rounded(rest[1])};
+}
 
 int unit_count(const IntVector2& burgers) { return std::max(std::abs(burgers[0]), std::abs(burgers[1])); }
 
@@ -138,8 +105,7 @@ LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const P
   for (int v = 0; v < surface.mesh.vertex_count(); ++v)
     grid.value[v] = grid_value(psi[v], grid.constraint[v]);
   choose_jumps(surface.mesh, frames, measure, grid);
-  grid.curve_count.assign(surface.features.curves.size(), 0);
-  lengthen_short_curves(surface, frames, measure, grid);
+  settle_curve_counts(surface, frames, measure, grid);
   return grid;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "hybrid_quad/periodic_field/grid_measure.h"
@@ -44,6 +45,12 @@ inline IntVector2 burgers_of(const IntVector2& windings) {
 /// Number of unit dislocations: |winding of a| + |winding of b|.
 int unit_count(const IntVector2& burgers);
 
+/// 0 for what is no number of use.
+inline int rounded(double x) { return std::isfinite(x) && std::abs(x) < 1e9 ? static_cast<int>(std::lround(x)) : 0; }
+
+/// Sets the jump on h's side and what follows from it on the other.
+void set_jump(const TriangleMesh& mesh, const FrameField& frames, int h, const IntVector2& jump, LiftedGrid& grid);
+
 /// Which way a feature half-edge's coordinate along the curve should grow: +1 or -1.
 inline int along_sign(const GridMeasure& measure, int h) {
   return measure.along[h][measure.axis[h]] >= 0 ? 1 : -1;
@@ -54,7 +61,8 @@ int fewest_curve_edges(const FeatureCurve& curve);
 
 /// Pins the cones of the field to grid points (a posteriori: design/FEW_SINGULARITIES), relaxes the others
 /// around them, and chooses every edge's jump once, by rounding what the frames of both sides measure on
-/// average. Feature edges get exactly nothing across, and curves that would vanish their fewest quad edges.
+/// average. Feature edges get exactly nothing across, curves with an asked count that many quad edges, and those that
+/// would vanish their fewest.
 LiftedGrid lift(const WorkingSurface& surface, const FrameField& frames, const PeriodicField& field,
                 const GridMeasure& measure);
 

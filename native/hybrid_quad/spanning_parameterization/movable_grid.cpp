@@ -27,6 +27,18 @@ MovableGrid::MovableGrid(const WorkingSurface& surface, const FrameField& frames
     quads += std::isfinite(density) ? density * mesh_.area(f) : 0;
   }
   longest_way_ = std::max(8.0, 4 * std::sqrt(quads));
+  near_counts_ = faces_near_counts(surface, frames);
+  limit_near_counts(quads);
+  allowed_ = allowed_counts(surface, measure);
+}
+
+/// So far that all of them together make or take no more than a quarter of the quads.
+void MovableGrid::limit_near_counts(double quads) {
+  constexpr double kShare = 0.25, kShortest = 8;
+  int units = 0;
+  for (int f = 0; f < mesh_.face_count(); ++f)
+    if (!near_counts_.empty() && near_counts_[f]) units += unit_count(burgers_[f]);
+  longest_near_counts_ = std::min(longest_way_, std::max(kShortest, 2 * kShare * quads / std::max(1, units)));
 }
 
 bool MovableGrid::may_cross(int h, const IntVector2& b) const {
@@ -35,8 +47,8 @@ bool MovableGrid::may_cross(int h, const IntVector2& b) const {
   if (axis < 0) return true;
   if (b[1 - axis] != 0) return false;
   const int curve = surface_.features.halfedge_curve[h];
-  const int shorter = b[axis] * along_sign(measure_, h);
-  return shorter <= 0 || grid_.curve_count[curve] - shorter >= fewest_curve_edges(surface_.features.curves[curve]);
+  const int shorter = b[axis] * along_sign(measure_, h), after = grid_.curve_count[curve] - shorter;
+  return shorter > 0 ? after >= allowed_[curve].fewest : after <= allowed_[curve].most;
 }
 
 void MovableGrid::cross(int h, const IntVector2& b) {

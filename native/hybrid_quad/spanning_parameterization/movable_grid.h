@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_quad/spanning_parameterization/curve_counts.h"
 #include "hybrid_quad/spanning_parameterization/lifted_grid.h"
 #include "hybrid_quad/spanning_parameterization/strip_widths.h"
 
@@ -15,7 +16,7 @@ inline bool is_zero(const IntVector2& x) { return x[0] == 0 && x[1] == 0; }
 constexpr double kFeatureCrossing = 0.3;
 
 /// A lifted grid whose dislocations move from face to face by changes of jumps, with all that bounds them: features are
-/// crossed only along themselves, curves keep their fewest edges, strips between features a row of quads.
+/// crossed only along themselves, curves keep as many edges as they may have, strips between features a row of quads.
 class MovableGrid {
  public:
   MovableGrid(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, LiftedGrid& grid);
@@ -27,8 +28,11 @@ class MovableGrid {
   double step_length(int f, int g) const {
     return (centre_[f] - centre_[g]).norm() * 0.5 * (scale_[f] + scale_[g]);
   }
-  /// Nothing on the surface is further away than a few times its size in quads; a longer way only shears it.
-  double longest_way() const { return longest_way_; }
+  /// How far what starts in face f may go, in quads. Nothing on the surface is further away than a few times its size; a
+  /// longer way only shears it. Rows that a counted curve calls for end near it: else many run through the whole surface.
+  double longest_way(int f) const {
+    return near_counts_.empty() || !near_counts_[f] ? longest_way_ : longest_near_counts_;
+  }
   /// Whether a dislocation may leave its face over half-edge h.
   bool may_cross(int h, const IntVector2& b) const;
   /// What leaves a face over h with Burgers vector b; the other side gets it.
@@ -45,6 +49,8 @@ class MovableGrid {
   LiftedGrid& grid() { return grid_; }
 
  private:
+  void limit_near_counts(double quads);
+
   const WorkingSurface& surface_;
   const TriangleMesh& mesh_;
   const FrameField& frames_;
@@ -54,7 +60,9 @@ class MovableGrid {
   std::vector<IntVector2> burgers_;
   std::vector<Vector3> centre_;
   std::vector<double> scale_;  ///< quads a unit of length
-  double longest_way_ = 0;
+  double longest_way_ = 0, longest_near_counts_ = 0;
+  std::vector<char> near_counts_;    ///< #F, or empty
+  std::vector<CountRange> allowed_;  ///< #curves
 };
 
 }  // namespace hybrid_quad

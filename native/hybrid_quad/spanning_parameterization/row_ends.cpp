@@ -142,13 +142,14 @@ class RowEndCanceller {
       std::push_heap(heap_.begin(), heap_.end(), later);
     };
     for (int i = 0; i < directions; ++i) reach(4 * face_of(from) + (first_direction + i) % 4, 0, -1);
+    const double longest = grid_.longest_way(face_of(from));
     int end_direction = 0;
     while (!heap_.empty()) {
       const auto [d, state] = heap_.front();
       std::pop_heap(heap_.begin(), heap_.end(), later);
       heap_.pop_back();
       if (settled_[state] == stamp_) continue;
-      if (d > grid_.longest_way() || d >= best.cost) break;
+      if (d > longest || d >= best.cost) break;
       settled_[state] = stamp_;
       const int t = state / 4;
       const IntVector2& b = kDirections[state % 4];
@@ -167,7 +168,7 @@ class RowEndCanceller {
         if (settled_[next] != stamp_) reach(next, d + grid_.step_length(t, o / 3) + crossing, h);
       }
     }
-    if (best.cost > grid_.longest_way()) best.end = End::kNone;
+    if (best.cost > longest) best.end = End::kNone;
     if (best.end != End::kNone) trace_back(4 * best.end_face + end_direction, best);
     return best;
   }

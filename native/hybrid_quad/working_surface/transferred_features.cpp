@@ -118,6 +118,7 @@ void CurveTracer::trace(int c) {
   if (start < 0) throw InternalError("working_surface", "curve " + std::to_string(c) + " lost its first vertex");
   curve.closed = input_.curves[c].closed;
   curve.boundary = input_.curves[c].boundary;
+  curve.asked_count = input_.curves[c].asked_count;
   curve.vertices = follow(c, start);
   if (runs_backwards(curve.vertices, input_.curves[c])) std::reverse(curve.vertices.begin(), curve.vertices.end());
 }

@@ -1,0 +1,85 @@
+"""An exact number of quad edges along chains of edges, in Python and by the command line."""
+
+import json
+
+import numpy as np
+import pytest
+
+import hybrid_quad
+from hybrid_quad.cli.main import main
+from hybrid_quad.core.mesh_io import read_mesh
+from support import surfaces
+from support.results import assert_sound
+
+
+def _on_edge(points, axis, corner):
+    """Which points are on the line along an axis through a corner."""
+    return np.isclose(np.delete(points, axis, axis=1), np.delete(corner, axis)).all(axis=1)
+
+
+def _box_edge(vertices, axis):
+    on = np.flatnonzero(_on_edge(vertices, axis, vertices.min(axis=0)))
+    return on[np.argsort(vertices[on, axis])].tolist()
+
+
+def _edges_along(result, vertices, axis):
+    on = _on_edge(result.vertices, axis, vertices.min(axis=0))
+    sides = np.sort(np.stack([result.quads, np.roll(result.quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    return len(np.unique(sides[on[sides].all(axis=1)], axis=0))
+
+
+@pytest.mark.parametrize("quads", [400, 2000])
+def test_two_edges_of_a_box(quads):
+    vertices, faces = surfaces.box(8)
+    asked = [(_box_edge(vertices, 0), 6), (np.array(_box_edge(vertices, 2)), 11)]
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, curve_counts=asked)
+    assert_sound(result, faces)
+    assert _edges_along(result, vertices, 0) == 6
+    assert _edges_along(result, vertices, 2) == 11
+    assert result.report["curve_counts"] == [{"asked": n, "got": n, "reason": ""} for n in (6, 11)]
+
+
+def test_no_curves_are_as_none():
+    vertices, faces = surfaces.box(5)
+    plain = hybrid_quad.remesh(vertices, faces, quads=300)
+    empty = hybrid_quad.remesh(vertices, faces, quads=300, curve_counts=[])
+    assert np.array_equal(plain.vertices, empty.vertices)
+    assert plain.report["curve_counts"] == []
+
+
+def test_what_parity_forbids_is_reported():
+    vertices, faces = surfaces.cylinder()
+    around = np.flatnonzero(np.isclose(vertices[:, 2], vertices[:, 2].min()))
+    ring = around[np.argsort(np.arctan2(vertices[around, 1], vertices[around, 0]))].tolist()
+    result = hybrid_quad.remesh(vertices, faces, quads=500, curve_counts=[([*ring, ring[0]], 17)])
+    assert_sound(result, faces)
+    (record,) = result.report["curve_counts"]
+    assert record["asked"] == 17
+    assert record["got"] in (16, 18)
+    assert "even" in record["reason"]
+    assert any("asked for 17" in warning for warning in result.report["warnings"])
+
+
+def test_errors_name_the_elements():
+    vertices, faces = surfaces.box(4)
+    path = _box_edge(vertices, 0)
+    with pytest.raises(hybrid_quad.InputError) as refused:
+        hybrid_quad.remesh(vertices, faces, quads=100, curve_counts=[([path[0], path[-1]], 4)])
+    assert refused.value.code == "unknown_edge"
+    assert sorted(refused.value.elements) == sorted([path[0], path[-1]])
+
+
+def test_command_line(tmp_path):
+    vertices, faces = surfaces.box(6)
+    mesh, counts, out, report = (tmp_path / name for name in ("box.obj", "counts.txt", "out.obj", "report.json"))
+    rows = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in vertices]
+    rows += ["f " + " ".join(str(v + 1) for v in face) for face in np.asarray(faces).tolist()]
+    mesh.write_text("\n".join(rows) + "\n")
+    counts.write_text(" ".join(map(str, [9, *_box_edge(vertices, 1)])) + "\n")
+    arguments = ["remesh", str(mesh), str(out), "--quads", "300", "--quiet"]
+    arguments += ["--curve-counts", str(counts), "--report", str(report)]
+    assert main(arguments) == 0
+    assert json.loads(report.read_text())["curve_counts"] == [{"asked": 9, "got": 9, "reason": ""}]
+    assert (read_mesh(out)[1].sizes == 4).all()
+    counts.write_text("9 0 x\n")
+    assert main(arguments) == 2
