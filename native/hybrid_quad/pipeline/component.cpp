@@ -162,7 +162,7 @@ class ComponentRemesher {
   Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
     const SizedFrames sized = clock_.measure("sizing", [&] {
       SizingOptions o;
-      constexpr double kWhereAsked = 10;  // sizes that someone asked for count more than even ones
+      constexpr double kWhereAsked = 100;  // sizes that someone asked for count more than even ones
       const bool asked_sizes = !wishes_.density.empty() || !wishes_.corner_frames.empty();
       const double fidelity = curl_weight_of(options_.size_fidelity) * (asked_sizes ? kWhereAsked : 1);
       o.curl_weight = std::max(settings_.curl_weight, fidelity);
@@ -174,12 +174,14 @@ class ComponentRemesher {
     const PeriodicField psi = clock_.measure("periodic field", [&] {
       PeriodicFieldOptions o;
       o.solver = options_.solver;
+      o.strip_rows = options_.narrow_quads;
       return solve_periodic_field(surface_, sized.field, o, context_.in_stage("periodic field", 0.4, 0.55));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(psi, surface_));
     Extraction out;
     out.param = clock_.measure("spanning parameterization", [&] {
       SpanningOptions o;
+      o.strip_rows = options_.narrow_quads;
       o.cancel_dislocations = attempt == Attempt::kFull;
       return build_spanning_parameterization(surface_, sized.field, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
     });
