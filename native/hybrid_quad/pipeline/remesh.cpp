@@ -70,6 +70,21 @@ std::vector<std::array<int, 2>> marked_in(const Component& component, const std:
   return out;
 }
 
+/// The usual edge length where the caller says how long edges are to be, or how far from the surface; 0 where it is the
+/// number of quads that counts. \param chords  receives chord_lengths_on() each component
+double given_length(const std::vector<Component>& components, const std::vector<std::vector<std::array<int, 2>>>& marked,
+                    const RemeshOptions& options, double diagonal, std::vector<std::vector<double>>& chords,
+                    const RunContext& context) {
+  double quads = 0, area = 0;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    chords.push_back(chord_lengths_on(components[i].mesh, marked[i], options, diagonal, context));
+    if (chords.back().empty()) continue;
+    quads += quads_for_lengths(components[i].mesh, chords.back());
+    area += components[i].mesh.total_area();
+  }
+  return quads > 0 ? std::sqrt(area / quads) : options.edge_length;
+}
+
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& component, const std::vector<int>& input_vertex,
             int images) {
@@ -151,24 +166,28 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   const std::vector<Component> components = split_components(domain.mesh);
   report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());
   const double area = domain.mesh.total_area();
-  const double even_length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * area / std::max(1, options.quads));
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
   std::vector<std::vector<std::array<int, 2>>> marked;
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
+    for (const Component& c : components) marked.push_back(marked_in(c, domain.is_marked));
+    std::vector<std::vector<double>> chords;
+    const double given = given_length(components, marked, domain.options, built.mesh.diagonal(), chords, plan_context);
+    const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
     double weighted_area = 0;  // at density 1
-    for (const Component& c : components) {
-      marked.push_back(marked_in(c, domain.is_marked));
-      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked.back(), domain.options, even_length, plan_context));
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      const Component& c = components[i];
+      wishes.push_back(
+          wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i], domain.options, even_length, chords[i], plan_context));
       weighted_area += area_by_density(c.mesh, wishes.back().density);
     }
-    const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * weighted_area / std::max(1, options.quads));
+    const double length = given > 0 ? given : std::sqrt(images * weighted_area / std::max(1, options.quads));
     wanted = images * weighted_area / (length * length);
     for (std::size_t i = 0; i < components.size(); ++i)
       plans.push_back(plan_component(components[i].mesh, length, marked[i], wishes[i], domain.options, plan_context));
-    if (!(options.edge_length > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
+    if (!(given > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
   });
 
   const SurfaceIndex whole(built.mesh, {});
