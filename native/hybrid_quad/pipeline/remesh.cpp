@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
@@ -112,6 +113,21 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
 }
 
+/// Quads that lie alone between two features: two opposite edges of theirs are feature edges.
+int lone_quads(const QuadMesh& mesh) {
+  std::set<std::array<int, 2>> features;
+  for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) features.insert({std::min(e.a, e.b), std::max(e.a, e.b)});
+  int count = 0;
+  for (const auto& q : mesh.quads) {
+    const auto is_feature = [&](int side) {
+      const int a = q[side], b = q[(side + 1) & 3];
+      return features.count({std::min(a, b), std::max(a, b)}) > 0;
+    };
+    count += (is_feature(0) && is_feature(2)) || (is_feature(1) && is_feature(3));
+  }
+  return count;
+}
+
 void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
                      const std::vector<ComponentResult>& parts, const SurfaceIndex& whole, const RunContext& context) {
   RemeshReport& r = result.report;
@@ -213,6 +229,9 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   if (std::abs(report.quads / wanted - 1) > 0.1)
     report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
                               ": features or small parts need another number");
+  const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
+  if (lone > 0)
+    report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
   if (images > 1) {
