@@ -111,15 +111,16 @@ class ComponentRemesher {
 
   /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked.
   Extraction extract_with_count(const FrameField& unit) {
-    constexpr int kTries = 4;
+    constexpr int kTriesOfMany = 4, kTriesOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
+    const int tries = plan_.quads < kFew ? kTriesOfFew : kTriesOfMany;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex index(mesh_, plan_.features.face_region);
     CountSearch search(plan_.quads);
     Extraction best;
     bool any = false;
-    for (int i = 0; i < kTries; ++i) {
-      const bool last = i + 1 == kTries;
+    for (int i = 0; i < tries; ++i) {
+      const bool last = i + 1 == tries;
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
       // What is as far off as that needs no improving, unless it is all there is.
