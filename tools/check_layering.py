@@ -27,7 +27,7 @@ PUBLIC_HEADERS = {
     "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
     "features": {"curve_counts.h"},
-    "sizing": {"asked_lengths.h", "feature_size.h"},
+    "sizing": {"asked_lengths.h", "chord_lengths.h", "feature_size.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 FORBIDDEN_IMPORTS = {"core": ("bpy", "cli", "blender"), "cli": ("bpy", "blender"), "": ("bpy",)}

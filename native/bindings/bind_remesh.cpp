@@ -165,6 +165,8 @@ py::dict default_options() {
   result["sharp_angle"] = options.use_sharp_angle ? py::object(py::float_(options.sharp_angle)) : py::none();
   result["field_smoothness"] = options.field_smoothness;
   result["adaptivity"] = options.adaptivity;
+  result["chord_error"] = options.chord_error;
+  result["narrow_quads"] = options.narrow_quads;
   result["anisotropy"] = options.anisotropy;
   result["size_fidelity"] = options.size_fidelity;
   result["solver"] = options.solver == PeriodicSolver::kMultilevel ? "multilevel" : "eigen";
@@ -188,7 +190,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& density,
                const DoubleArray& vertex_frames, const DoubleArray& face_frames,
                const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
-               double adaptivity, double anisotropy, double size_fidelity, const std::string& symmetry,
+               double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
+               const std::string& symmetry,
                const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
                py::object cancel, py::object snapshot) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
@@ -206,6 +209,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         for (const auto& [path, count] : curve_counts) options.curve_counts.push_back({path, count});
         options.field_smoothness = field_smoothness;
         options.adaptivity = adaptivity;
+        options.chord_error = chord_error;
+        options.narrow_quads = narrow_quads;
         options.anisotropy = anisotropy;
         options.size_fidelity = size_fidelity;
         options.symmetry = symmetry_named(symmetry);
@@ -230,7 +235,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
       py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"),
       py::arg("vertex_guides"), py::arg("face_guides"), py::arg("density"), py::arg("vertex_frames"),
-      py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"), py::arg("anisotropy"),
+      py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"),
+      py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),

@@ -15,6 +15,7 @@ import pytest
 
 import hybrid_quad
 from hybrid_quad.blender import command, edge_marks
+from hybrid_quad.blender.remesh_task import prepare_task
 from scenes import add_cube, add_object, assert_sound
 
 BATCH = Path(hybrid_quad.__file__).parent / "batch.py"
@@ -133,6 +134,17 @@ def test_guides_and_flow_from_arguments():
     assert settings.guide_object == line and settings.guide_collection == bpy.data.collections["Lines"]
     assert (settings.guide_radius, settings.adaptivity) == (3, 0.5)
     assert (settings.field_smoothness, settings.anisotropy) == (0.25, 2)
+
+
+def test_a_chord_error_from_arguments_takes_the_place_of_count_and_adaptivity():
+    obj = add_cube()
+    obj.hybrid_quad.adaptivity = 0.5
+    words = "--object Cube --output o.blend --chord-error 0.02 --narrow-quads 1"
+    command._apply_settings(obj, command._parser().parse_args(words.split()))
+    assert (obj.hybrid_quad.target_mode, obj.hybrid_quad.narrow_quads) == ("CHORD", 1)
+    options = prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options
+    assert options.chord_error == pytest.approx(0.02)
+    assert (options.adaptivity, options.edge_length, options.narrow_quads) == (0, None, 1)
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,19 @@ TEST(SizePlan, StretchesFreePartsForWhatNeedsMore) {
   }
 }
 
+TEST(SizePlan, ShortEdgesGiveWayOnlyWhereTheOthersCannot) {
+  // Nearly all of a thin slab's quads are at its rims: these must give way too, but by no more than twice.
+  const ComponentPlan alone = plan(test::box(10, Vector3(4, 0.3, 0.2)), 0.5);
+  const double asked = 0.5 * alone.quads;
+  std::vector<ComponentPlan> plans{alone};
+  balance_plans(plans, asked);
+  EXPECT_LE(plans[0].quads, 1.02 * asked);
+  std::vector<ComponentPlan> hopeless{alone};
+  balance_plans(hopeless, 1);
+  for (int v = 0; v < alone.mesh.vertex_count(); ++v) EXPECT_LE(hopeless[0].target[v], 2 * alone.length + 1e-12);
+  EXPECT_GT(hopeless[0].quads, alone.quads / 4.1);
+}
+
 TEST(SizePlan, LeavesRoomySurfacesAlone) {
   std::vector<ComponentPlan> plans{plan(test::icosphere(4), 0.2)};
   const std::vector<double> before = plans[0].target;

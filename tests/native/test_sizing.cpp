@@ -50,6 +50,20 @@ TEST(Sizing, FlatGridStaysAsItIs) {
   for (int f = 0; f < surface.mesh.face_count(); ++f) EXPECT_NEAR(result.field.du[f].norm(), 2, 1e-5);
 }
 
+TEST(Sizing, NoFrameIsEverTurnedOver) {
+  WorkingSurface surface = surface_of(bumpy(), 0.1, 200);
+  for (int f = 0; f < surface.mesh.face_count(); ++f)
+    if (surface.mesh.position(surface.mesh.face(f)[0]).x() > 0) surface.target_length[f] *= 3;  // a jump: as rough as can be
+  const FrameField unit = solved(surface);
+  for (const double weight : {1e-10, 1e-5, 1e-3, 1.0, 100.0}) {
+    SizingOptions options;
+    options.curl_weight = weight;
+    const SizedFrames result = apply_sizing(surface, unit, 400, options, RunContext{});
+    for (int f = 0; f < surface.mesh.face_count(); ++f)
+      ASSERT_GT(result.field.du[f].cross(result.field.dv[f]).dot(surface.mesh.normal(f)), 0) << weight;
+  }
+}
+
 TEST(Sizing, CorrectionLowersCurlAndKeepsTheField) {
   const WorkingSurface surface = surface_of(bumpy(), 0.1, 200);
   const FrameField unit = solved(surface);

@@ -8,7 +8,9 @@
 #include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/frame_field/surface_curvature.h"
 #include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/mesh/surface_index.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
+#include "hybrid_quad/sizing/chord_lengths.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"
 
@@ -280,6 +282,76 @@ TEST(Wishes, ThatMakeNoSenseAreRefusedByName) {
   options.vertex_frames.assign(mesh.vertex_count(), {Vector3(1, 0, 0), Vector3(0, 1, 0)});
   options.vertex_frames[4][1] = Vector3(2, 0, 0);
   EXPECT_EQ(code_of(options), "degenerate_frame 4");
+}
+
+/// Distances of the quads' middles to the surface, sorted.
+std::vector<double> distances(const QuadMesh& mesh, const TriangleMesh& surface) {
+  const SurfaceIndex index(surface, {});
+  std::vector<double> found;
+  for (const auto& q : mesh.quads) {
+    const Vector3 middle = 0.25 * (mesh.positions[q[0]] + mesh.positions[q[1]] + mesh.positions[q[2]] + mesh.positions[q[3]]);
+    found.push_back(std::sqrt(index.nearest(middle).squared_distance));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TEST(ChordError, OfASphereGivesTheLengthOfItsChords) {
+  const TriangleMesh mesh = test::icosphere(5);
+  ChordOptions options;
+  options.error = 0.01;
+  options.start = 0.2;
+  options.least = 0.01;
+  options.longest = 1;
+  // Both curvatures are 1: the middle of a quad is l^2 / 4 below its corners.
+  const FeatureGraph features = detect_features(mesh, FeatureOptions{}, RunContext{});
+  for (const double l : chord_lengths(mesh, features, options, RunContext{})) EXPECT_NEAR(l, std::sqrt(4 * 0.01), 0.03);
+}
+
+TEST(ChordError, IsKeptByNearlyAllQuadsAndCostsWhatItMust) {
+  const TriangleMesh mesh = test::torus(160, 80);
+  int last = 0;
+  for (const double error : {0.02, 0.005}) {
+    RemeshOptions options;
+    options.chord_error = error;
+    const RemeshResult result = remeshed(mesh, options);
+    const std::vector<double> found = distances(result.mesh, mesh);
+    EXPECT_LE(found[found.size() * 95 / 100], error);
+    EXPECT_GE(found[found.size() * 95 / 100], 0.15 * error);
+    if (last > 0) {
+      EXPECT_NEAR(static_cast<double>(result.report.quads) / last, 4, 1);  // a quarter of the error, half the length
+    }
+    last = result.report.quads;
+  }
+}
+
+TEST(ChordError, TakesAGivenEdgeLengthForTheLongest) {
+  const TriangleMesh mesh = test::icosphere(4);
+  RemeshOptions options;
+  options.chord_error = 0.5;
+  options.edge_length = 0.2;
+  const RemeshResult result = remeshed(mesh, options);
+  EXPECT_NEAR(result.report.quads, mesh.total_area() / 0.04, 0.1 * mesh.total_area() / 0.04);
+}
+
+TEST(NarrowStrips, GetTheRowsThatAreAskedForAndAsManyQuads) {
+  for (const double thickness : {0.1, 0.15, 0.2}) {
+    const TriangleMesh plate = test::box(10, Vector3(4, 4, thickness));
+    for (const int rows : {1, 2}) {
+      RemeshOptions options;
+      options.quads = 800;
+      options.narrow_quads = rows;
+      const RemeshResult result = remesh(test::soup_of(plate), options, RunContext{});
+      EXPECT_EQ(result.report.flawed_quads, 0);
+      EXPECT_NEAR(result.report.quads, 800, 80);
+      std::vector<double> upright;
+      visit_quad_edges(result.mesh, [&](const Vector3& a, const Vector3& b) {
+        if (a.x() < 1e-9 && b.x() < 1e-9 && std::abs(a.y() - b.y()) < 0.01) upright.push_back(std::abs(a.z() - b.z()));
+      });
+      ASSERT_FALSE(upright.empty());
+      EXPECT_NEAR(median(upright), thickness / rows, 0.1 * thickness) << thickness << ' ' << rows;
+    }
+  }
 }
 
 }  // namespace

@@ -136,6 +136,15 @@ def test_parallel_frame_vectors_are_refused():
     assert list(caught.value.elements) == [3]
 
 
+def test_a_chord_error_decides_how_many_quads_there_are():
+    vertices, faces = surfaces.torus()
+    few, many = (hybrid_quad.remesh(vertices, faces, sharp_angle=None, chord_error=error) for error in (0.04, 0.01))
+    for result in (few, many):
+        assert_sound(result, faces)
+    assert 2 < len(many.quads) / len(few.quads) < 6
+    assert many.report["mean_distance_percent"] < few.report["mean_distance_percent"]
+
+
 def write_obj(path, vertices, faces):
     rows = [f"v {x} {y} {z}" for x, y, z in vertices]
     rows += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
@@ -155,6 +164,18 @@ def test_the_command_line_takes_a_density_and_settings(tmp_path):
     assert [options[name] for name in ("field_smoothness", "adaptivity", "anisotropy", "size_fidelity")] == [0.7, 0.2, 1.5, 0.6]
     points = np.array([line.split()[1:] for line in target.read_text().splitlines() if line.startswith("v ")], float)
     assert (points[:, 0] > 0.3).sum() > 1.5 * (points[:, 0] < -0.3).sum()
+
+
+def test_the_command_line_takes_a_chord_error_or_a_count(tmp_path):
+    vertices, faces = surfaces.torus()
+    source, target, report = (tmp_path / name for name in ("in.obj", "out.obj", "report.json"))
+    write_obj(source, vertices, faces)
+    arguments = ["remesh", str(source), str(target), "--chord-error", "0.03", "--quiet", "--report", str(report)]
+    assert main([*arguments, "--quads", "500"]) == 2
+    assert not target.exists()
+    assert main([*arguments, "--narrow-quads", "1"]) == 0
+    options = json.loads(report.read_text())["options"]
+    assert (options["chord_error"], options["narrow_quads"]) == (0.03, 1)
 
 
 def test_a_density_file_that_does_not_fit_is_wrong_usage(tmp_path):

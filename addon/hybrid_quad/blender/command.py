@@ -97,6 +97,9 @@ def _parser() -> argparse.ArgumentParser:
     size.add_argument(
         "--edge-length", type=_positive_number, metavar="L", help="length of the quads' edges, in scene units"
     )
+    size.add_argument(
+        "--chord-error", type=_positive_number, metavar="E", help="largest distance to the surface, in scene units"
+    )
     sharp = parser.add_mutually_exclusive_group()
     sharp.add_argument("--sharp-angle", type=_angle, metavar="DEG", help="keep edges that bend by more than this")
     sharp.add_argument("--no-sharp", action="store_true", help="keep only the boundary and marked edges")
@@ -128,6 +131,9 @@ def _parser() -> argparse.ArgumentParser:
         "--field-smoothness", type=_share, metavar="S", help="0: follow detail; 1: fewest singularities"
     )
     parser.add_argument("--anisotropy", type=_stretch, metavar="R", help="longest ratio of a quad's sides (1: squares)")
+    parser.add_argument(
+        "--narrow-quads", type=int, choices=(1, 2), help="least rows of quads in narrow strips between kept edges"
+    )
     parser.add_argument(
         "--symmetry",
         metavar="xyz|auto|none",
@@ -223,6 +229,8 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
         settings.target_mode, settings.quads = "COUNT", options.quads
     if options.edge_length is not None:
         settings.target_mode, settings.edge_length = "LENGTH", options.edge_length
+    if options.chord_error is not None:
+        settings.target_mode, settings.chord_error = "CHORD", options.chord_error
     if options.sharp_angle is not None:
         settings.use_sharp_angle, settings.sharp_angle = True, math.radians(options.sharp_angle)
     if options.no_sharp:
@@ -251,6 +259,7 @@ _SAME_NAMES = (
     "adaptivity",
     "field_smoothness",
     "anisotropy",
+    "narrow_quads",
 )
 
 

@@ -10,6 +10,7 @@ import bpy
 from .edge_marks import BORDERS, SHARP, SOURCES
 from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_remesh
+from .properties import SIZE_SETTINGS
 from .result_mesh import read_report
 
 
@@ -45,7 +46,7 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
         settings = context.object.hybrid_quad
         column = layout.column()
         column.prop(settings, "target_mode")
-        column.prop(settings, "quads" if settings.target_mode == "COUNT" else "edge_length")
+        column.prop(settings, SIZE_SETTINGS[settings.target_mode])
         layout.prop(settings, "result_mode")
         run = OBJECT_OT_hybrid_quad_remesh.current_run
         if run is None:
@@ -144,7 +145,10 @@ class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
         layout.use_property_decorate = False
         settings = context.object.hybrid_quad
         column = layout.column()
-        column.prop(settings, "adaptivity")
+        adaptivity = column.column()
+        adaptivity.active = settings.target_mode != "CHORD"
+        adaptivity.prop(settings, "adaptivity")
+        column.prop(settings, "narrow_quads")
         column.prop(settings, "field_smoothness")
         column.prop(settings, "anisotropy")
 

@@ -12,7 +12,10 @@ from .edge_marks import SOURCES
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
     ("LENGTH", "Edge Length", "Say how long the quads' edges should be"),
+    ("CHORD", "Chord Error", "Say how far the quads may be from the surface"),
 )
+# What says the size in each of them.
+SIZE_SETTINGS = {"COUNT": "quads", "LENGTH": "edge_length", "CHORD": "chord_error"}
 RESULT_MODES = (
     ("NEW", "New Object", "Put the quads in a new object; this one stays as it is, hidden in viewports and renders"),
     (
@@ -26,7 +29,7 @@ RESULT_MODES = (
 STRENGTH = {"default": 1.0, "min": 0.0, "max": 1.0, "subtype": "FACTOR"}
 NUMBERS = {
     name: getattr(RemeshOptions, name, neutral)
-    for name, neutral in (("adaptivity", 0.0), ("field_smoothness", 1.0), ("anisotropy", 1.0))
+    for name, neutral in (("adaptivity", 0.0), ("field_smoothness", 1.0), ("anisotropy", 1.0), ("narrow_quads", 2))
 }
 
 
@@ -54,6 +57,23 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         precision=4,
         subtype="DISTANCE",
         unit="LENGTH",
+    )
+    chord_error: bpy.props.FloatProperty(
+        name="Chord Error",
+        description="Largest distance between quads and the surface to aim at; small quads where it bends, large ones elsewhere",
+        default=0.01,
+        min=1e-7,
+        soft_max=1.0,
+        precision=5,
+        subtype="DISTANCE",
+        unit="LENGTH",
+    )
+    narrow_quads: bpy.props.IntProperty(
+        name="Across Narrow Parts",
+        description="Rows of quads that strips between two kept edges get at least, however narrow",
+        default=NUMBERS["narrow_quads"],
+        min=1,
+        max=2,
     )
     use_sharp_angle: bpy.props.BoolProperty(
         name="Sharp Edges by Angle",

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 # Settings that are passed on as they are.
 _NUMBERS = tuple(
-    name for name in ("adaptivity", "field_smoothness", "anisotropy") if name in RemeshOptions.__dataclass_fields__
+    name for name in ("field_smoothness", "anisotropy", "narrow_quads") if name in RemeshOptions.__dataclass_fields__
 )
 
 
@@ -130,10 +130,13 @@ def prepare_task(
         If the object shows no surface.
     """
     settings: HybridQuadSettings = obj.hybrid_quad
+    by_chord = settings.target_mode == "CHORD"
     options = RemeshOptions(
         quads=settings.quads,
         edge_length=settings.edge_length if settings.target_mode == "LENGTH" else None,
         sharp_angle=round(math.degrees(settings.sharp_angle), 4) if settings.use_sharp_angle else None,
+        adaptivity=0.0 if by_chord else settings.adaptivity,
+        chord_error=settings.chord_error if by_chord else None,
         symmetry=settings.symmetry,
         seed=seed,
         threads=threads,

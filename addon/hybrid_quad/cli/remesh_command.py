@@ -37,6 +37,13 @@ def add_to(commands: Any) -> None:
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quads", type=int, metavar="N", help="number of quads to aim at (default 5000)")
     size.add_argument("--edge-length", type=float, metavar="L", help="length of the quads' edges instead")
+    parser.add_argument(
+        "--chord-error",
+        type=float,
+        metavar="E",
+        help="instead of --quads: the largest distance of quads to the surface, by which the curvature sets their size; "
+        "--edge-length is then the longest edge",
+    )
     sharp = parser.add_mutually_exclusive_group()
     sharp.add_argument(
         "--sharp-angle",
@@ -75,6 +82,13 @@ def add_to(commands: Any) -> None:
         default=RemeshOptions.adaptivity,
         metavar="A",
         help="0: edges of even length, 1: as short as the curvature asks for (default %(default)s)",
+    )
+    parser.add_argument(
+        "--narrow-quads",
+        type=int,
+        choices=(1, 2),
+        default=RemeshOptions.narrow_quads,
+        help="rows of quads that narrow strips between features get at least (default %(default)s)",
     )
     parser.add_argument(
         "--anisotropy",
@@ -161,6 +175,8 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
         raise UsageProblem(f"--guide-radius must be > 0, not {arguments.guide_radius}")
     if not 0 <= arguments.guide_strength <= 1:
         raise UsageProblem(f"--guide-strength must be between 0 and 1, not {arguments.guide_strength}")
+    if arguments.chord_error is not None and arguments.quads is not None:
+        raise UsageProblem("--chord-error and --quads exclude each other: the error decides how many quads there are")
     try:
         return RemeshOptions(
             quads=RemeshOptions.quads if arguments.quads is None else arguments.quads,
@@ -168,6 +184,8 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
             sharp_angle=None if arguments.no_sharp else arguments.sharp_angle,
             field_smoothness=arguments.field_smoothness,
             adaptivity=arguments.adaptivity,
+            chord_error=arguments.chord_error,
+            narrow_quads=arguments.narrow_quads,
             anisotropy=arguments.anisotropy,
             size_fidelity=arguments.size_fidelity,
             symmetry=arguments.symmetry,

@@ -36,6 +36,12 @@ class RemeshOptions:
     adaptivity : float
         0: edges of even length; 1: as short as the curvature asks for, so that all quads are about equally far from the
         surface. Within a third and twice the usual length.
+    chord_error : float or None
+        Largest distance between quads and the surface that is aimed at, in the units of the vertices. The curvature then
+        says how long edges are, not `quads`; `edge_length` is the longest, an eighth of the bounding box's diagonal
+        where it is not given, and 64 times the shortest. In place of `adaptivity`.
+    narrow_quads : {1, 2}
+        Rows of quads that strips between two features get at least.
     anisotropy : float
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
@@ -60,6 +66,8 @@ class RemeshOptions:
     sharp_angle: float | None = 40.0
     field_smoothness: float = 0.5
     adaptivity: float = 0.0
+    chord_error: float | None = None
+    narrow_quads: int = 2
     anisotropy: float = 1.0
     size_fidelity: float = 0.5
     symmetry: str = ""
@@ -85,6 +93,18 @@ class RemeshOptions:
         for name in ("field_smoothness", "adaptivity", "size_fidelity"):
             value = getattr(self, name)
             _require(0 <= value <= 1, f"{name} must be between 0 and 1, not {value!r}")
+        _require(
+            self.chord_error is None or (math.isfinite(self.chord_error) and self.chord_error > 0),
+            f"chord_error must be > 0, not {self.chord_error!r}",
+        )
+        _require(
+            self.chord_error is None or self.adaptivity == 0,
+            "chord_error and adaptivity exclude each other: both make sizes follow the curvature",
+        )
+        _require(
+            _is_integer(self.narrow_quads) and 1 <= self.narrow_quads <= 2,
+            f"narrow_quads must be 1 or 2, not {self.narrow_quads!r}",
+        )
         _require(
             1 <= self.anisotropy <= MOST_ANISOTROPY,
             f"anisotropy must be between 1 and {MOST_ANISOTROPY}, not {self.anisotropy!r}",
@@ -121,6 +141,8 @@ class RemeshOptions:
             "sharp_angle": None if self.sharp_angle is None else float(self.sharp_angle),
             "field_smoothness": float(self.field_smoothness),
             "adaptivity": float(self.adaptivity),
+            "chord_error": float(self.chord_error or 0.0),
+            "narrow_quads": int(self.narrow_quads),
             "anisotropy": float(self.anisotropy),
             "size_fidelity": float(self.size_fidelity),
             "symmetry": self.symmetry,

@@ -76,6 +76,8 @@ def remesh(
     frames: npt.ArrayLike | None = None,
     field_smoothness: float = 0.5,
     adaptivity: float = 0.0,
+    chord_error: float | None = None,
+    narrow_quads: int = 2,
     anisotropy: float = 1.0,
     size_fidelity: float = 0.5,
     symmetry: str = "",
@@ -128,6 +130,11 @@ def remesh(
         as can be.
     adaptivity : float
         0: edges of even length, 1: as short as the curvature asks for.
+    chord_error : float, optional
+        Instead of `quads` and `adaptivity`: the largest distance between quads and the surface that is aimed at, in the
+        units of `vertices`. `edge_length` then bounds the edges; without one, an eighth of the diagonal does.
+    narrow_quads : {1, 2}
+        Rows of quads that strips between two features get at least, unless two were slivers.
     anisotropy : float
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
@@ -178,6 +185,8 @@ def remesh(
         sharp_angle=sharp_angle,
         field_smoothness=field_smoothness,
         adaptivity=adaptivity,
+        chord_error=chord_error,
+        narrow_quads=narrow_quads,
         anisotropy=anisotropy,
         size_fidelity=size_fidelity,
         symmetry=symmetry,
@@ -256,7 +265,7 @@ def _symmetry_center(points: FloatArray, options: RemeshOptions) -> FloatArray |
 def _require_enough_length(
     points: FloatArray, polygons: Polygons, options: RemeshOptions, density: FloatArray
 ) -> None:
-    if options.edge_length is None:
+    if options.edge_length is None or options.chord_error is not None:
         return
     expected = surface_area(points, polygons) / options.edge_length**2
     if len(density):

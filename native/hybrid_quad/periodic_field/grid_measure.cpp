@@ -53,7 +53,7 @@ void stretch_curves(const TriangleMesh& mesh, const FeatureGraph& features, Grid
 
 }  // namespace
 
-GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frames) {
+GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frames, int strip_rows) {
   const TriangleMesh& mesh = surface.mesh;
   GridMeasure measure;
   measure.along.resize(mesh.halfedge_count());
@@ -64,7 +64,7 @@ GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frame
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (surface.features.is_feature(h) && h > mesh.opposite(h)) choose_axis(mesh, frames, h, measure);
-  widen_narrow_strips(mesh, frames, measure);
+  widen_narrow_strips(mesh, frames, strip_rows, measure);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h)) align_feature_edge(mesh, frames, h, measure);
   stretch_curves(mesh, surface.features, measure);

@@ -23,10 +23,10 @@ struct GridMeasure {
 };
 
 /// Measures the frames along edges. Feature edges are laid on the nearer of the two grid directions: nothing
-/// across, their whole length along, equal on both sides. Strips between two features get room for one quad,
-/// and curves too short to get the edges that a quad mesh needs (one between two corners, four around a loop)
-/// are stretched to that many, as are curves that are to get a certain number.
-GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frames);
+/// across, their whole length along, equal on both sides. Strips between two features get room for
+/// `strip_rows` quads, and curves too short to get the edges that a quad mesh needs (one between two corners, four around a
+/// loop) are stretched to that many, as are curves that are to get a certain number.
+GridMeasure measure_edges(const WorkingSurface& surface, const FrameField& frames, int strip_rows = 1);
 
 /// The vertex gauges: a vertex's values are those of the face of its outgoing(v); corner_turn takes them into
 /// the others.

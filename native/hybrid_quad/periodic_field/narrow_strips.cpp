@@ -11,6 +11,8 @@ namespace {
 constexpr int kMostFaces = 200;
 /// Strips narrower than this (in quads) are tips of wedges, where two features meet.
 constexpr double kNarrowest = 0.05;
+/// Strips narrower than this get one row whatever is asked: two would be more than four times as long as wide.
+constexpr double kRoomForRows = 0.5;
 
 double cross(const Vector2& x, const Vector2& y) { return x[0] * y[1] - x[1] * y[0]; }
 
@@ -74,18 +76,19 @@ class StripWalk {
 
 }  // namespace
 
-void widen_narrow_strips(const TriangleMesh& mesh, const FrameField& frames, GridMeasure& measure) {
+void widen_narrow_strips(const TriangleMesh& mesh, const FrameField& frames, int rows, GridMeasure& measure) {
   std::vector<std::array<double, 2>> factor(mesh.face_count(), {1, 1});
   StripWalk walk(mesh, frames, measure);
   bool any = false;
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     if (measure.axis[h] < 0) continue;
     for (const double t : {1.0 / 6, 0.5, 5.0 / 6}) {
-      const double width = walk.width(h, t, 1);
+      const double width = walk.width(h, t, rows);
       if (width < kNarrowest) continue;
       any = true;
+      const double wanted = width < kRoomForRows ? 1 : rows;
       for (const FaceOnWalk& on : walk.faces())
-        factor[on.face][on.coordinate] = std::max(factor[on.face][on.coordinate], 1 / width);
+        factor[on.face][on.coordinate] = std::max(factor[on.face][on.coordinate], wanted / width);
     }
   }
   if (!any) return;

@@ -62,7 +62,7 @@ std::vector<GridConstraint> grid_constraints(const WorkingSurface& surface, cons
 PeriodicField solve_periodic_field(const WorkingSurface& surface, const FrameField& frames,
                                    const PeriodicFieldOptions& options, const RunContext& context) {
   context.checkpoint(0);
-  const GridMeasure measure = measure_edges(surface, frames);
+  const GridMeasure measure = measure_edges(surface, frames, options.strip_rows);
   VertexGauges gauges = choose_vertex_gauges(surface.mesh, frames);
   PeriodicField field;
   field.constraint = grid_constraints(surface, measure, gauges);

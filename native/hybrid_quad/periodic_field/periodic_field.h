@@ -33,6 +33,7 @@ struct PeriodicFieldOptions {
   double constraint_weight = 1;      ///< w_r, Eq. (18)
   double gradient_tolerance = 1e-3;  ///< stop of Gauss-Newton (relative)
   int max_newton_steps = 30;
+  int strip_rows = 1;  ///< rows of quads that a narrow strip between two features gets room for
   int sweeps = 10;     ///< nonlinear relaxation sweeps a level
   int coarsest = 300;  ///< nodes of the level whose eigenvector starts the multilevel solve
 };

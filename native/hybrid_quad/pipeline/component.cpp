@@ -113,8 +113,9 @@ class ComponentRemesher {
 
   /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked.
   Extraction extract_with_count(const FrameField& unit) {
-    constexpr int kTries = 4;
+    constexpr int kTriesOfMany = 4, kTriesOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
+    const int tries = plan_.quads < kFew ? kTriesOfFew : kTriesOfMany;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex index(mesh_, plan_.features.face_region);
     // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
@@ -124,8 +125,8 @@ class ComponentRemesher {
     CountSearch search(plan_.quads, counted ? kLeastBesideCounts * plan_.quads : 0);
     Extraction best;
     bool any = false;
-    for (int i = 0; i < kTries; ++i) {
-      const bool last = i + 1 == kTries || search.at_least();
+    for (int i = 0; i < tries; ++i) {
+      const bool last = i + 1 == tries || search.at_least();
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
       // What is as far off as that needs no improving, unless it is all there is.
@@ -171,7 +172,7 @@ class ComponentRemesher {
   Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
     const SizedFrames sized = clock_.measure("sizing", [&] {
       SizingOptions o;
-      constexpr double kWhereAsked = 10;  // sizes that someone asked for count more than even ones
+      constexpr double kWhereAsked = 100;  // sizes that someone asked for count more than even ones
       const bool asked_sizes = !wishes_.density.empty() || !wishes_.corner_frames.empty();
       const double fidelity = curl_weight_of(options_.size_fidelity) * (asked_sizes ? kWhereAsked : 1);
       o.curl_weight = std::max(settings_.curl_weight, fidelity);
@@ -183,12 +184,14 @@ class ComponentRemesher {
     const PeriodicField psi = clock_.measure("periodic field", [&] {
       PeriodicFieldOptions o;
       o.solver = options_.solver;
+      o.strip_rows = options_.narrow_quads;
       return solve_periodic_field(surface_, sized.field, o, context_.in_stage("periodic field", 0.4, 0.55));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(psi, surface_));
     Extraction out;
     out.param = clock_.measure("spanning parameterization", [&] {
       SpanningOptions o;
+      o.strip_rows = options_.narrow_quads;
       o.cancel_dislocations = attempt == Attempt::kFull;
       return build_spanning_parameterization(surface_, sized.field, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
     });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
@@ -71,6 +72,21 @@ std::vector<std::array<int, 2>> marked_in(const Component& component, const std:
   return out;
 }
 
+/// The usual edge length where the caller says how long edges are to be, or how far from the surface; 0 where it is the
+/// number of quads that counts. \param chords  receives chord_lengths_on() each component
+double given_length(const std::vector<Component>& components, const std::vector<std::vector<std::array<int, 2>>>& marked,
+                    const RemeshOptions& options, double diagonal, std::vector<std::vector<double>>& chords,
+                    const RunContext& context) {
+  double quads = 0, area = 0;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    chords.push_back(chord_lengths_on(components[i].mesh, marked[i], options, diagonal, context));
+    if (chords.back().empty()) continue;
+    quads += quads_for_lengths(components[i].mesh, chords.back());
+    area += components[i].mesh.total_area();
+  }
+  return quads > 0 ? std::sqrt(area / quads) : options.edge_length;
+}
+
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& component, const std::vector<int>& input_vertex,
             int images) {
@@ -96,6 +112,21 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   r.patches.morse_smale += images * component.patches.morse_smale;
   r.patches.combinatorial += images * component.patches.combinatorial;
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
+}
+
+/// Quads that lie alone between two features: two opposite edges of theirs are feature edges.
+int lone_quads(const QuadMesh& mesh) {
+  std::set<std::array<int, 2>> features;
+  for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) features.insert({std::min(e.a, e.b), std::max(e.a, e.b)});
+  int count = 0;
+  for (const auto& q : mesh.quads) {
+    const auto is_feature = [&](int side) {
+      const int a = q[side], b = q[(side + 1) & 3];
+      return features.count({std::min(a, b), std::max(a, b)}) > 0;
+    };
+    count += (is_feature(0) && is_feature(2)) || (is_feature(1) && is_feature(3));
+  }
+  return count;
 }
 
 void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
@@ -153,7 +184,6 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   const std::vector<Component> components = split_components(domain.mesh);
   report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());
   const double area = domain.mesh.total_area();
-  const double even_length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * area / std::max(1, options.quads));
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
   std::vector<std::vector<std::array<int, 2>>> marked;
@@ -161,19 +191,24 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
+    for (const Component& c : components) marked.push_back(marked_in(c, domain.is_marked));
+    std::vector<std::vector<double>> chords;
+    const double given = given_length(components, marked, domain.options, built.mesh.diagonal(), chords, plan_context);
+    const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
     double weighted_area = 0;  // at density 1
-    for (const Component& c : components) {
-      marked.push_back(marked_in(c, domain.is_marked));
-      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked.back(), domain.options, even_length, plan_context));
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      const Component& c = components[i];
+      wishes.push_back(
+          wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i], domain.options, even_length, chords[i], plan_context));
       weighted_area += area_by_density(c.mesh, wishes.back().density);
     }
-    const double length = options.edge_length > 0 ? options.edge_length : std::sqrt(images * weighted_area / std::max(1, options.quads));
+    const double length = given > 0 ? given : std::sqrt(images * weighted_area / std::max(1, options.quads));
     wanted = images * weighted_area / (length * length);
     for (std::size_t i = 0; i < components.size(); ++i)
       plans.push_back(plan_component(components[i].mesh, length, marked[i],
                                      counts.chains_on(components[i].mesh, components[i].face, domain.counted_curve), wishes[i],
                                      domain.options, plan_context));
-    if (!(options.edge_length > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
+    if (!(given > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
   });
 
   const SurfaceIndex whole(built.mesh, {});
@@ -200,6 +235,9 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   if (std::abs(report.quads / wanted - 1) > 0.1)
     report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
                               ": features or small parts need another number");
+  const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
+  if (lone > 0)
+    report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
   if (report.flawed_quads > 0)
     report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
   report.curve_counts = counts.records();

@@ -11,6 +11,7 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kMostStretch = 1.6;
+constexpr double kMostGiving = 2;
 
 int boundary_loops(const TriangleMesh& mesh) {
   std::vector<char> seen(mesh.vertex_count(), 0);
@@ -31,12 +32,20 @@ double least_quads(const TriangleMesh& mesh) {
   return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
 }
 
-/// Target lengths where everything that nothing limits is `factor` times as long.
-std::vector<double> stretched(const ComponentPlan& plan, double factor) {
+/// How much longer edges are made than they were planned.
+struct Stretch {
+  double unlimited = 1;  ///< where nothing limits them
+  double limited = 1;    ///< where features and thin parts do
+};
+
+std::vector<double> stretched(const ComponentPlan& plan, const Stretch& stretch) {
   std::vector<double> longer = plan.target;
-  for (std::size_t v = 0; v < longer.size(); ++v)
-    if (longer[v] >= plan.unlimited[v]) longer[v] = factor * plan.unlimited[v];
-  grade_lengths(plan.mesh, factor * *std::max_element(plan.unlimited.begin(), plan.unlimited.end()), longer);
+  for (std::size_t v = 0; v < longer.size(); ++v) {
+    const double most = stretch.unlimited * plan.unlimited[v];
+    longer[v] = longer[v] >= plan.unlimited[v] ? most : std::min(most, stretch.limited * longer[v]);
+  }
+  const double longest = stretch.unlimited * *std::max_element(plan.unlimited.begin(), plan.unlimited.end());
+  grade_lengths(plan.mesh, longest, longer, FeatureSizeOptions{}.growth * stretch.limited);
   return longer;
 }
 
@@ -53,6 +62,31 @@ void shorten_for_counts(ComponentPlan& plan) {
     any = true;
   }
   if (any) grade_lengths(plan.mesh, *std::max_element(plan.target.begin(), plan.target.end()), plan.target);
+}
+
+double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch) {
+  double sum = 0;
+  for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, stretch));
+  return sum;
+}
+
+/// The least stretch at which no more quads fit than were asked for, first of what is free to give way, then of the rest.
+Stretch least_stretch(const std::vector<ComponentPlan>& plans, double quads_asked) {
+  constexpr double kPrecision = 1.005;
+  Stretch stretch;
+  const auto widen = [&](double& value, double most) {
+    double low = value, high = most;
+    value = high;
+    if (quads_of(plans, stretch) >= quads_asked) return false;
+    while (high / low > kPrecision) {
+      value = std::sqrt(low * high);
+      (quads_of(plans, stretch) > quads_asked ? low : high) = value;
+    }
+    value = high;
+    return true;
+  };
+  if (!widen(stretch.unlimited, kMostStretch)) widen(stretch.limited, kMostGiving);
+  return stretch;
 }
 
 }  // namespace
@@ -95,21 +129,11 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
 }
 
 void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
-  constexpr double kPrecision = 1.005;
-  const auto total = [&](double factor) {
-    double sum = 0;
-    for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, factor));
-    return sum;
-  };
-  if (total(1) <= quads_asked * kPrecision) return;
-  double low = 1, high = kMostStretch;
-  if (total(high) < quads_asked)
-    while (high / low > kPrecision) {
-      const double middle = std::sqrt(low * high);
-      (total(middle) > quads_asked ? low : high) = middle;
-    }
+  constexpr double kEnough = 1.005;
+  if (quads_of(plans, Stretch{}) <= quads_asked * kEnough) return;
+  const Stretch stretch = least_stretch(plans, quads_asked);
   for (ComponentPlan& plan : plans) {
-    plan.target = stretched(plan, high);
+    plan.target = stretched(plan, stretch);
     plan.quads = quads_for_lengths(plan.mesh, plan.target);
   }
 }

@@ -30,7 +30,8 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
                              const RemeshOptions& options, const RunContext& context);
 
 /// Small features and thin parts need shorter edges than was asked: lengthens the others, in all components alike and by
-/// no more than three fifths, until as many quads fit as were asked for.
+/// no more than three fifths, until as many quads fit as were asked for; where that is not enough, then lengthens the short
+/// ones too, by no more than twice.
 void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
 
 /// The plan with shorter edges: everywhere by a factor, and at some places.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hybrid_quad/sizing/asked_lengths.h"
+#include "hybrid_quad/sizing/chord_lengths.h"
 
 namespace hybrid_quad {
 
@@ -91,24 +92,32 @@ void multiply_by_frames(const TriangleMesh& mesh, const std::vector<Frame>& fram
     if (count[v] > 0) density[v] *= std::exp(sum[v] / count[v]);
 }
 
+/// Multiplies the density by what the curvature asks for.
+void multiply_by_curvature(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
+                           const RemeshOptions& options, double usual_length, std::vector<double>& density,
+                           const RunContext& context) {
+  FeatureOptions asked = feature_options(options, usual_length);
+  asked.marked_edges = marked;
+  const FeatureGraph features = detect_features(component, asked, context);
+  const std::vector<double> even(component.vertex_count(), usual_length);
+  const WorkingSurface surface = build_working_surface(component, features, even, WorkingSurfaceOptions{}, context);
+  const std::vector<double> by_curvature = curvature_density(surface, component, usual_length, options.adaptivity);
+  for (int v = 0; v < component.vertex_count(); ++v) density[v] *= by_curvature[v];
+}
+
 std::vector<double> density_of(const TriangleMesh& component, const std::vector<int>& vertex, const BuiltMesh& built,
                                const std::vector<Frame>& frames, const std::vector<std::array<int, 2>>& marked,
-                               const RemeshOptions& options, double usual_length, const RunContext& context) {
-  if (options.density.empty() && frames.empty() && !(options.adaptivity > 0)) return {};
+                               const RemeshOptions& options, double usual_length, const std::vector<double>& chords,
+                               const RunContext& context) {
+  const bool by_curvature = chords.empty() && options.adaptivity > 0;
+  if (options.density.empty() && frames.empty() && chords.empty() && !by_curvature) return {};
   std::vector<double> density(component.vertex_count(), 1.0);
   if (!options.density.empty())
     for (int v = 0; v < component.vertex_count(); ++v) density[v] = options.density[built.input_vertex[vertex[v]]];
   if (!frames.empty()) multiply_by_frames(component, frames, density);
   for (double& d : density) d = std::clamp(d, kLeastDensity, kMostDensity);
-  if (options.adaptivity > 0) {
-    FeatureOptions asked = feature_options(options, usual_length);
-    asked.marked_edges = marked;
-    const FeatureGraph features = detect_features(component, asked, context);
-    const std::vector<double> even(component.vertex_count(), usual_length);
-    const WorkingSurface surface = build_working_surface(component, features, even, WorkingSurfaceOptions{}, context);
-    const std::vector<double> by_curvature = curvature_density(surface, component, usual_length, options.adaptivity);
-    for (int v = 0; v < component.vertex_count(); ++v) density[v] *= by_curvature[v];
-  }
+  for (std::size_t v = 0; v < chords.size(); ++v) density[v] *= usual_length / chords[v];
+  if (by_curvature) multiply_by_curvature(component, marked, options, usual_length, density, context);
   grade_density(component, usual_length, kGrowth, density);
   return density;
 }
@@ -128,7 +137,7 @@ void check_wishes(const PolygonSoup& soup, const RemeshOptions& options) {
 
 Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
                  const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
-                 double usual_length, const RunContext& context) {
+                 double usual_length, const std::vector<double>& chords, const RunContext& context) {
   Wishes wishes;
   std::vector<Vector3> guides =
       at_corners(options.vertex_guides, options.face_guides, Vector3(0, 0, 0), component, vertex, face, built);
@@ -136,13 +145,27 @@ Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, 
                                     component, vertex, face, built);
   if (!wishes.corner_frames.empty()) put_frames_first(component, wishes.corner_frames, guides);
   if (!guides.empty()) wishes.guides = GuideMap(component, guides);
-  wishes.density = density_of(component, vertex, built, wishes.corner_frames, marked, options, usual_length, context);
+  wishes.density = density_of(component, vertex, built, wishes.corner_frames, marked, options, usual_length, chords, context);
   wishes.most_stretch = std::clamp(options.anisotropy, 1.0, kMostFrameStretch);
   for (const Frame& frame : wishes.corner_frames)
     if (!is_free(frame)) wishes.most_stretch = std::max(wishes.most_stretch, stretch_ratio(frame));
   if (!wishes.guides.empty() || !wishes.corner_frames.empty() || !wishes.density.empty())
     wishes.index = std::make_shared<const SurfaceIndex>(component, std::vector<int>{});
   return wishes;
+}
+
+std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
+                                     const RemeshOptions& options, double diagonal, const RunContext& context) {
+  constexpr double kLongest = 1 / 8.0, kLeast = 1 / 64.0;  // of the diagonal, and of the longest
+  if (!(options.chord_error > 0)) return {};
+  ChordOptions chord;
+  chord.error = options.chord_error;
+  chord.longest = options.edge_length > 0 ? options.edge_length : kLongest * diagonal;
+  chord.least = kLeast * chord.longest;
+  chord.start = std::sqrt(options.chord_error * diagonal);  // right where the radius is an eighth of the diagonal
+  FeatureOptions asked = feature_options(options, std::min(chord.start, chord.longest));
+  asked.marked_edges = marked;
+  return chord_lengths(component, detect_features(component, asked, context), chord, context);
 }
 
 FeatureOptions feature_options(const RemeshOptions& options, double length) {

@@ -229,7 +229,7 @@ class Canceller {
 
 void cancel_dislocations(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          const SpanningOptions& options, const RunContext& context, LiftedGrid& grid) {
-  MovableGrid movable(surface, frames, measure, grid);
+  MovableGrid movable(surface, frames, measure, options.strip_rows, grid);
   Canceller(options, context, movable).run();
   cancel_row_ends(options, context, movable);
 }

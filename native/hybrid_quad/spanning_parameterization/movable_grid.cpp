@@ -6,13 +6,13 @@
 namespace hybrid_quad {
 
 MovableGrid::MovableGrid(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
-                         LiftedGrid& grid)
+                         int least_rows, LiftedGrid& grid)
     : surface_(surface),
       mesh_(surface.mesh),
       frames_(frames),
       measure_(measure),
       grid_(grid),
-      strips_(surface.mesh, frames, measure, grid) {
+      strips_(surface.mesh, frames, measure, grid, least_rows) {
   const int n = mesh_.face_count();
   burgers_.resize(n);
   centre_.resize(n);

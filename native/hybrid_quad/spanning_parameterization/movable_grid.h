@@ -16,10 +16,12 @@ inline bool is_zero(const IntVector2& x) { return x[0] == 0 && x[1] == 0; }
 constexpr double kFeatureCrossing = 0.3;
 
 /// A lifted grid whose dislocations move from face to face by changes of jumps, with all that bounds them: features are
-/// crossed only along themselves, curves keep as many edges as they may have, strips between features a row of quads.
+/// crossed only along themselves, curves keep as many edges as they may have, strips between features their least number
+/// of rows.
 class MovableGrid {
  public:
-  MovableGrid(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, LiftedGrid& grid);
+  MovableGrid(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure, int least_rows,
+              LiftedGrid& grid);
 
   const IntVector2& burgers(int f) const { return burgers_[f]; }
   /// As if the Burgers vector of face f had grown by b: for trying things out.

@@ -102,7 +102,7 @@ SpanningParameterization build_spanning_parameterization(const WorkingSurface& s
                                                          const RunContext& context) {
   context.checkpoint(0);
   SpanningParameterization param;
-  const GridMeasure measure = measure_edges(surface, frames);
+  const GridMeasure measure = measure_edges(surface, frames, options.strip_rows);
   LiftedGrid grid = lift(surface, frames, psi, measure);
   context.checkpoint(0.3);
   param.dislocations_found = count_dislocations(surface.mesh, grid);

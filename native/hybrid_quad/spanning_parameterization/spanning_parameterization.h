@@ -33,6 +33,7 @@ struct SpanningParameterization {
 
 struct SpanningOptions {
   bool cancel_dislocations = true;
+  int strip_rows = 1;         ///< as in PeriodicFieldOptions
   double cone_cost = 0.3;     ///< cost of absorbing a charge at a cone, in quads
   int stiffening_rounds = 3;  ///< re-solves with more weight around folded faces
 };

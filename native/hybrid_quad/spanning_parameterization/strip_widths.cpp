@@ -10,13 +10,14 @@ namespace hybrid_quad {
 
 namespace {
 
-/// Strips between features up to this many quads wide must keep a row of quads.
+/// Strips between features up to this many quads wide must keep their least number of rows.
 constexpr double kGuardedWidth = 2.5;
 
 }  // namespace
 
 StripWidths::StripWidths(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
-                         const LiftedGrid& grid) {
+                         const LiftedGrid& grid, int least_rows)
+    : least_rows_(least_rows) {
   const auto strips = find_strips(mesh, frames, measure, kGuardedWidth);
   std::vector<std::pair<int, Effect>> effects;
   for (const auto& chain : strips) {
@@ -43,7 +44,7 @@ StripWidths::StripWidths(const TriangleMesh& mesh, const FrameField& frames, con
 bool StripWidths::allow(int h, const IntVector2& b) const {
   for (int i = first_[h]; i < first_[h + 1]; ++i) {
     const int change = effects_[i].gain[0] * b[0] + effects_[i].gain[1] * b[1];
-    if (change < 0 && width_[effects_[i].strip] + change < 1) return false;
+    if (change < 0 && width_[effects_[i].strip] + change < least_rows_) return false;
   }
   return true;
 }

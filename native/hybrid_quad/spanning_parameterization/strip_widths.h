@@ -11,9 +11,9 @@ namespace hybrid_quad {
 class StripWidths {
  public:
   StripWidths(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
-              const LiftedGrid& grid);
+              const LiftedGrid& grid, int least_rows);
 
-  /// Whether every strip keeps a row of quads when Burgers vector b leaves over half-edge h.
+  /// Whether every strip keeps the least number of rows, or what fewer it has, when Burgers vector b leaves over half-edge h.
   bool allow(int h, const IntVector2& b) const;
   void cross(int h, const IntVector2& b);
 
@@ -22,6 +22,7 @@ class StripWidths {
     int strip;
     IntVector2 gain;  ///< change of the width = gain . Burgers vector
   };
+  int least_rows_;
   std::vector<int> width_;
   std::vector<int> first_;  ///< 3 #F + 1, into effects_
   std::vector<Effect> effects_;
