@@ -143,6 +143,28 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
     return np.array(pairs, np.int64).reshape(-1, 2)  # type: ignore[return-value]
 
 
+def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
+    """(k, 2) vertices of the edges that an .obj file gives as lines (``l``), as its mesh counts them; other formats have none.
+
+    Raises
+    ------
+    MeshFileError
+    """
+    path = Path(path)
+    pairs: list[tuple[int, int]] = []
+    latest = 0
+    for line in _read_text(path).splitlines() if path.suffix.lower() == ".obj" else ():
+        latest += line.startswith(("v ", "v\t"))
+        if line.startswith(("l ", "l\t")):
+            try:
+                indices = [int(token.partition("/")[0]) for token in line.split()[1:]]
+            except ValueError:
+                raise MeshFileError(f"{path}: {line.strip()!r} is no line of vertices") from None
+            places = [index - 1 if index >= 0 else latest + index for index in indices]
+            pairs += zip(places, places[1:], strict=False)
+    return _as_int32([place for pair in pairs for place in pair]).reshape(-1, 2)
+
+
 def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:
     """(k, width) numbers from a text file, `width` a line; ``#`` starts a comment.
 

@@ -20,7 +20,8 @@ struct Defect {
   std::string code;          ///< e.g. "non_manifold_edge", "flipped_face", "duplicate_face", "zero_area_face", "isolated_vertex", "non_finite_vertex"
   std::string element_kind;  ///< "vertex", "edge" (elements are then vertex pairs, flattened) or "face"
   std::vector<int> elements;
-  bool repairable = false;
+  bool repairable = false;   ///< remesh goes on
+  bool kept = false;         ///< and leaves it as it is; false: repairs it
   std::string remedy;        ///< what remesh does about it, or what the user can do
 };
 
@@ -32,7 +33,7 @@ struct BuiltMesh {
   std::vector<Defect> defects;    ///< what was found, and repaired, on the way
 };
 
-/// Finds defects without changing anything.
+/// Finds defects without changing anything, and oddities_of() what can be remeshed.
 std::vector<Defect> check_mesh(const PolygonSoup& soup);
 
 /// Triangulates polygons (ear clipping in their best plane), drops what has no area, welds exact coincidences where that closes cracks,
