@@ -21,6 +21,7 @@ struct ComponentResult {
   int flawed_quads = 0;  ///< quads that point against the surface or have no area
   int doubtful_quads = 0;  ///< these and smaller ones that only just pass that test
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
+  double extracted_quads = 0;  ///< in all tries of the pass
   int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;
 };

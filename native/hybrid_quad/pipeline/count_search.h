@@ -13,6 +13,8 @@ class CountSearch {
   double next() const { return next_; }  ///< to ask for
   /// What came out of asking for next().
   void record(double got);
+  /// Whether asking for far fewer or more made next to no difference: features leave no other number.
+  bool is_stuck() const;
   /// | log(got / wanted) |
   double error(double got) const;
 
