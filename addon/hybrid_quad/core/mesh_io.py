@@ -96,6 +96,10 @@ def check_place(path: str | os.PathLike[str]) -> None:
         raise MeshFileError(f"{path}: the folder {path.parent} does not exist")
     if path.is_dir():
         raise MeshFileError(f"{path}: is a folder")
+    if path.exists() and not path.is_file():  # a device, say: it must not be replaced by a file
+        raise MeshFileError(f"{path}: is no regular file")
+    if not os.access(path.parent, os.W_OK):
+        raise MeshFileError(f"{path}: the folder {path.parent} cannot be written to")
 
 
 @contextlib.contextmanager
