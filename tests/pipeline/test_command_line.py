@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -214,7 +215,7 @@ def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more)
     assert set(tmp_path.iterdir()) == files
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")  # noqa: PTH110
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_a_device_is_not_replaced(tmp_path, torus, capfd):
     arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", "--report", "/dev/full"]
     unchanged(tmp_path, arguments, exit_codes.WRONG_USAGE)

@@ -1,4 +1,4 @@
-"""The operators ``object.hybrid_quad_check`` and ``object.hybrid_quad_select_defect``: what is wrong with a mesh, and where."""
+"""What is wrong with a mesh, and where: ``object.hybrid_quad_check`` and ``object.hybrid_quad_select_defect``."""
 
 from __future__ import annotations
 

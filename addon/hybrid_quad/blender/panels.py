@@ -192,8 +192,8 @@ class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
             line = column.row()
             line.label(text=describe_row(row), icon="INFO" if row["repairable"] else "ERROR")
             if row["elements"]:
-                select = line.operator(OBJECT_OT_hybrid_quad_select_defect.bl_idname, text="", icon="RESTRICT_SELECT_OFF")
-                select.code = row["code"]
+                name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
+                line.operator(name, text="", icon=icon).code = row["code"]
 
 
 class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):

@@ -148,7 +148,7 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
 
 
 def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
-    """(k, 2) vertices of the edges that an .obj file gives as lines (``l``), as its mesh counts them; other formats have none.
+    """(k, 2) vertices of the edges that an .obj file has as lines (``l``), as its mesh counts them; others have none.
 
     Raises
     ------

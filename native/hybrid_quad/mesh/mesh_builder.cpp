@@ -28,7 +28,7 @@ class MeshBuilder {
  public:
   explicit MeshBuilder(const PolygonSoup& soup) : soup_(soup) {}
 
-  BuiltMesh build();
+  BuiltMesh build(const RunContext& context);
   std::vector<Defect> defects;
 
  private:
@@ -303,18 +303,24 @@ void MeshBuilder::drop_components_without_area(BuiltMesh& built) {
   built = std::move(kept);
 }
 
-BuiltMesh MeshBuilder::build() {
+BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_faces();
   find_references();
   check_positions();
   normalize_positions();
+  context.checkpoint();
   make_triangles();
+  context.checkpoint();
   weld();
+  context.checkpoint();
   drop_duplicates();
+  context.checkpoint();
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
   note("t_junction", "vertex", split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_),
        "the edge beside it is split, which closes the crack");
+  context.checkpoint();
   BuiltMesh built = glue();
+  context.checkpoint();
   drop_components_without_area(built);
   return built;
 }
@@ -324,7 +330,7 @@ BuiltMesh MeshBuilder::build() {
 std::vector<Defect> check_mesh(const PolygonSoup& soup) {
   MeshBuilder builder(soup);
   try {
-    const BuiltMesh built = builder.build();
+    const BuiltMesh built = builder.build({});
     for (Defect& oddity : oddities_of(built)) builder.defects.push_back(std::move(oddity));
   } catch (const InputError&) {
     // The last defect says so.
@@ -332,9 +338,9 @@ std::vector<Defect> check_mesh(const PolygonSoup& soup) {
   return std::move(builder.defects);
 }
 
-BuiltMesh build_mesh(const PolygonSoup& soup) {
+BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context) {
   MeshBuilder builder(soup);
-  BuiltMesh built = builder.build();
+  BuiltMesh built = builder.build(context);
   built.defects = std::move(builder.defects);
   return built;
 }

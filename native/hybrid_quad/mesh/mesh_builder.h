@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -38,7 +39,7 @@ std::vector<Defect> check_mesh(const PolygonSoup& soup);
 
 /// Triangulates polygons (ear clipping in their best plane), drops what has no area, welds exact coincidences where that closes cracks,
 /// orients faces consistently, splits non-manifold edges and vertices into manifold sheets.
-/// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...
-BuiltMesh build_mesh(const PolygonSoup& soup);
+/// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...; Cancelled
+BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context = {});
 
 }  // namespace hybrid_quad

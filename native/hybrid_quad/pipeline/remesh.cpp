@@ -161,9 +161,10 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   RemeshOptions options = scene_options;
   RunContext context = scene_context;
   BuiltMesh built = clock.measure("mesh", [&] {
-    context.in_stage("mesh", 0, 0.02).checkpoint();
+    const RunContext mesh_context = context.in_stage("mesh", 0, 0.02);
+    mesh_context.checkpoint();
     check_wishes(soup, options);
-    return build_mesh(soup);
+    return build_mesh(soup, mesh_context);
   });
   report.defects = built.defects;
   const UnitFrame frame = unit_frame_of(built.mesh.positions(), options.symmetry.planes != 0 || options.symmetry.detect);
