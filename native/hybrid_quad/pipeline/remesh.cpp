@@ -167,8 +167,6 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     return build_mesh(soup, mesh_context);
   });
   report.defects = built.defects;
-  const UnitFrame frame = unit_frame_of(built.mesh.positions(), options.symmetry.planes != 0 || options.symmetry.detect);
-  move_inward(frame, built, options, context);
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
 
@@ -176,6 +174,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     report.symmetry = clock.measure("symmetry", [&] {
       return settle_symmetry(options.symmetry, built.mesh, context.in_stage("symmetry", 0.02, 0.02));
     });
+  const UnitFrame frame = unit_frame_of(built.mesh.positions(), report.symmetry.planes != 0);
+  move_inward(frame, built, options, context);
   const int images = image_count(report.symmetry.planes);
   const RemeshDomain domain = domain_of(built, options, report.symmetry.planes);
   const std::vector<Component> components = split_components(domain.mesh);
