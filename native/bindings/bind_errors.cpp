@@ -32,10 +32,11 @@ void raise_in_python(const ErrorTypes& types, const InternalError& error) {
   raise_instance(types.internal_error, types.internal_error(error.what(), error.stage));
 }
 
-void raise_in_python(const ErrorTypes& types, const Cancelled& error, bool timed_out) {
+void raise_in_python(const ErrorTypes& types, const Cancelled& error, const std::string& passed_limit) {
   std::string message = error.what();
-  if (timed_out) message += " (the time limit passed)";
-  raise_instance(types.cancelled, types.cancelled(message, timed_out ? "time_limit" : "cancelled"));
+  if (passed_limit == "time_limit") message += " (the time limit passed)";
+  if (passed_limit == "memory_limit") message += " (the memory limit is reached)";
+  raise_instance(types.cancelled, types.cancelled(message, passed_limit.empty() ? "cancelled" : passed_limit));
 }
 
 }  // namespace hybrid_quad

@@ -2,6 +2,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 #include "hybrid_quad/base/errors.h"
 
 namespace hybrid_quad {
@@ -18,7 +20,7 @@ ErrorTypes load_error_types(const pybind11::module_& module);
 
 [[noreturn]] void raise_in_python(const ErrorTypes& types, const InputError& error);
 [[noreturn]] void raise_in_python(const ErrorTypes& types, const InternalError& error);
-/// \param timed_out true where the time limit was the reason
-[[noreturn]] void raise_in_python(const ErrorTypes& types, const Cancelled& error, bool timed_out);
+/// \param passed_limit  the reason, where it was a limit: "time_limit" or "memory_limit"
+[[noreturn]] void raise_in_python(const ErrorTypes& types, const Cancelled& error, const std::string& passed_limit);
 
 }  // namespace hybrid_quad

@@ -191,8 +191,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                const DoubleArray& vertex_frames, const DoubleArray& face_frames,
                const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
-               const std::string& symmetry,
-               const std::string& solver, std::uint64_t seed, int threads, double time_limit, py::object progress,
+               const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
+               double memory_limit, py::object progress,
                py::object cancel, py::object snapshot) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         RemeshOptions options;
@@ -215,7 +215,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.size_fidelity = size_fidelity;
         options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
-        CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), time_limit);
+        CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), {time_limit, memory_limit});
         try {
           const RemeshResult result = run_without_gil(soup, options, bridge.context(seed, threads));
           bridge.rethrow_pending();
@@ -229,7 +229,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
           raise_in_python(errors, error);
         } catch (const Cancelled& error) {
           bridge.rethrow_pending();
-          raise_in_python(errors, error, bridge.timed_out());
+          raise_in_python(errors, error, bridge.passed_limit());
         }
       },
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
@@ -238,7 +238,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"),
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),
-      py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("progress").none(true),
+      py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),
       "Quad mesh, feature edges and report of one run, as a dict.");
 }

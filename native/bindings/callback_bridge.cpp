@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hybrid_quad/pipeline/process_memory.h"
 #include "polygon_arrays.h"
 
 namespace py = pybind11;
@@ -29,12 +30,13 @@ py::dict dict_of_arrays(const std::map<std::string, std::vector<double>>& values
 
 }  // namespace
 
-CallbackBridge::CallbackBridge(py::object progress, py::object cancel, py::object snapshot, double time_limit)
+CallbackBridge::CallbackBridge(py::object progress, py::object cancel, py::object snapshot, const RunLimits& limits)
     : progress_(std::move(progress)),
       cancel_(std::move(cancel)),
       snapshot_(std::move(snapshot)),
-      has_deadline_(time_limit > 0),
-      deadline_(Clock::now() + (time_limit > 0 ? seconds(time_limit) : Clock::duration::zero())),
+      has_deadline_(limits.seconds > 0),
+      deadline_(Clock::now() + (has_deadline_ ? seconds(limits.seconds) : Clock::duration::zero())),
+      memory_limit_(limits.memory_mb),
       next_poll_(Clock::now()),
       next_report_(Clock::now()) {}
 
@@ -71,6 +73,11 @@ bool CallbackBridge::stop_requested() {
   const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock() || now < next_poll_) return false;  // another thread asks right now
   next_poll_ = now + kInterval;
+  if (memory_limit_ > 0 && resident_memory_mb() > memory_limit_) {
+    out_of_memory_ = true;
+    stop_ = true;
+    return true;
+  }
   in_python([this] {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!cancel_.is_none() && py::cast<bool>(py::bool_(cancel_()))) stop_ = true;

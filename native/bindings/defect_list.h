@@ -18,6 +18,7 @@ inline pybind11::list list_of_defects(const std::vector<Defect>& defects) {
     row["element_kind"] = defect.element_kind;
     row["elements"] = array_from_values(defect.elements);
     row["repairable"] = defect.repairable;
+    row["kept"] = defect.kept;
     row["remedy"] = defect.remedy;
     result.append(row);
   }

@@ -29,13 +29,23 @@ TEST(CountSearch, FindsTheWayThroughBiasAndSlope) {
   EXPECT_LT(least_error(800, 4, [](double asked) { return 20 * std::round(1.15 * asked / 20); }), 0.03);
 }
 
+TEST(CountSearch, IsNotStuckWhereAskingMakesADifference) {
+  CountSearch search(1000);
+  for (int i = 0; i < 4; ++i) {
+    search.record(300 + 0.4 * search.next());
+    EXPECT_FALSE(search.is_stuck());
+  }
+}
+
 TEST(CountSearch, BearsWhatItCannotChange) {
   CountSearch search(500);
+  EXPECT_FALSE(search.is_stuck());
   for (int i = 0; i < 10; ++i) {
     search.record(2000);
     EXPECT_GT(search.next(), 0);
     EXPECT_TRUE(std::isfinite(search.next()));
   }
+  EXPECT_TRUE(search.is_stuck());
 }
 
 }  // namespace

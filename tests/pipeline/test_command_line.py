@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -166,6 +167,67 @@ def test_the_time_limit(tmp_path, capfd):
         exit_codes.CANCELLED,
     )
     assert "time limit" in capfd.readouterr().err
+
+
+def test_the_memory_limit(tmp_path, torus, capfd):
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "300", "--memory-limit"]
+    unchanged(tmp_path, [*arguments, "1"], exit_codes.CANCELLED)
+    assert "memory limit" in capfd.readouterr().err
+    report = tmp_path / "report.json"
+    assert main([*arguments, "1", "--report", str(report)]) == exit_codes.CANCELLED
+    assert json.loads(report.read_text())["status"] == "memory_limit"
+    assert main([*arguments, "1000000"]) == exit_codes.OK
+    unchanged(tmp_path, [*arguments, "0"], exit_codes.WRONG_USAGE)
+
+
+def test_a_machine_without_memory(tmp_path, torus, capfd, monkeypatch):
+    from hybrid_quad.cli import remesh_command
+
+    def fail(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(remesh_command, "remesh_with_options", fail)
+    unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj")], exit_codes.CANCELLED)
+    assert "memory" in capfd.readouterr().err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+@pytest.mark.parametrize("more", [[], ["--report", "report.json"]], ids=["mesh", "report"])
+def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more):
+    import resource
+
+    out = tmp_path / "out.obj"
+    out.write_text("old result")
+    files = set(tmp_path.iterdir())
+    # As on a full disk: what goes beyond some bytes cannot be written. The report is longer than that alone.
+    limit = 200 if more else 2000
+    child = subprocess.run(
+        [sys.executable, "-m", "hybrid_quad", "remesh", torus, str(out), "--quads", "200", "--quiet", *more],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+        capture_output=True,
+        cwd=tmp_path,
+        text=True,
+        check=False,
+    )
+    assert child.returncode == exit_codes.WRONG_USAGE, child.stderr
+    assert "File too large" in child.stderr
+    assert out.read_text() == "old result"
+    assert set(tmp_path.iterdir()) == files
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_device_is_not_replaced(tmp_path, torus, capfd):
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", "--report", "/dev/full"]
+    unchanged(tmp_path, arguments, exit_codes.WRONG_USAGE)
+    assert "no regular file" in capfd.readouterr().err
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="nothing is denied to root")
+def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(tmp_path, torus, capfd):
+    folder = tmp_path / "locked"
+    folder.mkdir(mode=0o500)
+    assert main(["remesh", torus, str(folder / "out.obj")]) == exit_codes.WRONG_USAGE
+    assert "cannot be written to" in capfd.readouterr().err
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")

@@ -22,10 +22,6 @@ def manifold_models():
         return [row["name"] for row in csv.DictReader(file) if row["edge_mf"] == row["vert_mf"] == "y"]
 
 
-def bad_models():
-    return sorted(path.stem for path in (COLLECTION / "bad").glob("*.obj"))
-
-
 @pytest.mark.parametrize("sharp_angle", [40.0, None], ids=["sharp", "no_sharp"])
 @pytest.mark.parametrize(
     "name",
@@ -54,22 +50,3 @@ def test_manifold_models_of_the_collection(name, sharp_angle):
     vertices, faces = read_mesh(COLLECTION / "dev" / f"{name}.obj")
     result = hybrid_quad.remesh(vertices, faces, quads=2000, sharp_angle=sharp_angle)
     assert violations(result.vertices, result.quads) == []
-
-
-# What each of these does to a run is settled in a moment; the others take minutes together.
-QUICK = ("m15", "m16", "m18", "m19", "m20", "m21", "m22", "m23", "m38", "m39", "m41", "m43", "m44", "r01", "r15", "r19")
-
-
-@pytest.mark.skipif(not bad_models(), reason="no collection of meshes beside the repository")
-@pytest.mark.parametrize(
-    "name", [name if name.startswith(QUICK) else pytest.param(name, marks=pytest.mark.slow) for name in bad_models()]
-)
-def test_bad_models_give_valid_quads_or_a_named_reason(name):
-    vertices, faces = read_mesh(COLLECTION / "bad" / f"{name}.obj")
-    try:
-        result = hybrid_quad.remesh(vertices, faces, quads=300, time_limit=60)
-    except hybrid_quad.InputError as error:
-        assert error.code
-        assert str(error)
-    else:
-        assert violations(result.vertices, result.quads) == []

@@ -51,6 +51,30 @@ def test_a_request_to_stop_is_answered_within_a_second(after):
     assert time.monotonic() - begin < after + 1.5
 
 
+@pytest.mark.slow
+def test_twenty_requests_at_random_moments_of_a_long_run_are_answered_within_a_second():
+    mesh = surfaces.torus(270, 130)  # 70,200 triangles
+    begin = time.monotonic()
+    hybrid_quad.remesh(*mesh, quads=8000)
+    whole = time.monotonic() - begin
+    waits = []
+    for moment in np.random.default_rng(7).uniform(0, 0.95 * whole, 20):
+        begin = time.monotonic()
+        try:
+            hybrid_quad.remesh(*mesh, quads=8000, cancel=lambda end=begin + moment: time.monotonic() > end)
+        except hybrid_quad.Cancelled:
+            waits.append(time.monotonic() - begin - moment)  # from the moment that the wish to stop arose
+    assert len(waits) >= 15  # the others ended before
+    assert max(waits) < 1.0
+
+
+def test_the_memory_limit_holds():
+    with pytest.raises(hybrid_quad.Cancelled) as caught:
+        hybrid_quad.remesh(*BIG, quads=20000, memory_limit=1)
+    assert caught.value.code == "memory_limit"
+    assert len(hybrid_quad.remesh(*surfaces.torus(), quads=100, memory_limit=1e6).quads)
+
+
 def test_the_time_limit_holds():
     begin = time.monotonic()
     with pytest.raises(hybrid_quad.Cancelled) as caught:

@@ -88,7 +88,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Turns an object's surface into pure quads and saves the file under another name. What is not "
         "given here is taken from the object's own settings.",
         epilog="Exit status: 0 done; 1 the object cannot be remeshed; 2 wrong usage; 3 internal error; 4 cancelled or "
-        "time limit. The output is written only with 0.",
+        "time or memory limit. The output is written only with 0.",
     )
     parser.add_argument("--object", required=True, metavar="NAME", help="mesh object to remesh")
     parser.add_argument("--output", required=True, metavar="OUT.blend", help="file to save the result to")
@@ -151,6 +151,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--time-limit", type=_positive_number, metavar="SECONDS", help="stop with status 4 after this time"
+    )
+    parser.add_argument(
+        "--memory-limit",
+        type=_positive_number,
+        metavar="MB",
+        help="stop with status 4 where Blender takes more memory",
     )
     parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
@@ -275,7 +281,14 @@ def _prepare(obj: bpy.types.Object, options: argparse.Namespace) -> RemeshTask:
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.mode_set(mode="OBJECT")
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return prepare_task(obj, depsgraph, seed=options.seed, threads=options.threads, time_limit=options.time_limit)
+    return prepare_task(
+        obj,
+        depsgraph,
+        seed=options.seed,
+        threads=options.threads,
+        time_limit=options.time_limit,
+        memory_limit=options.memory_limit,
+    )
 
 
 def _save(path: str) -> None:
@@ -315,6 +328,7 @@ _STATUS_OF_ERROR: dict[type, tuple[str, int]] = {
     MeshFileError: ("unwritable_file", exit_codes.WRONG_USAGE),
     ValueError: ("wrong_usage", exit_codes.WRONG_USAGE),
     Cancelled: ("cancelled", exit_codes.CANCELLED),
+    MemoryError: ("memory_limit", exit_codes.CANCELLED),
     InternalError: ("internal_error", exit_codes.BUG),
 }
 

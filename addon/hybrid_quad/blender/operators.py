@@ -42,7 +42,7 @@ class OBJECT_OT_hybrid_quad_remesh(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        problem = _problem_of(context)
+        problem = problem_of(context)
         if problem:
             cls.poll_message_set(problem)
         return not problem
@@ -151,7 +151,8 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
     self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname)
 
 
-def _problem_of(context: bpy.types.Context) -> str:
+def problem_of(context: bpy.types.Context) -> str:
+    """Why the active object cannot be worked on now; empty where it can."""
     obj = context.object
     if OBJECT_OT_hybrid_quad_remesh.current_run is not None:
         return "A run is going on already"

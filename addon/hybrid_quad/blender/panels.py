@@ -7,6 +7,12 @@ from typing import Any
 
 import bpy
 
+from .check_operators import (
+    OBJECT_OT_hybrid_quad_check,
+    OBJECT_OT_hybrid_quad_select_defect,
+    describe_row,
+    read_check,
+)
 from .edge_marks import BORDERS, SHARP, SOURCES
 from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_remesh
@@ -172,6 +178,28 @@ class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
         row.prop(settings, "use_auto_symmetry", toggle=True)
 
 
+class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
+    """What is wrong with the mesh."""
+
+    bl_label = "Check"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator(OBJECT_OT_hybrid_quad_check.bl_idname, icon="VIEWZOOM")
+        rows = read_check(context.object)
+        if rows == []:
+            layout.label(text="Nothing is wrong with it", icon="CHECKMARK")
+        column = layout.column(align=True)
+        for row in rows or ():
+            line = column.row()
+            line.label(text=describe_row(row), icon="INFO" if row["repairable"] else "ERROR")
+            if row["elements"]:
+                name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
+                line.operator(name, text="", icon=icon).code = row["code"]
+
+
 class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
     """What the latest run of the active object gave."""
 
@@ -247,5 +275,6 @@ CLASSES = (
     VIEW3D_PT_hybrid_quad_guides,
     VIEW3D_PT_hybrid_quad_flow,
     VIEW3D_PT_hybrid_quad_symmetry,
+    VIEW3D_PT_hybrid_quad_check,
     VIEW3D_PT_hybrid_quad_report,
 )

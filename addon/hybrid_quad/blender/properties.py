@@ -228,6 +228,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     last_report: bpy.props.StringProperty(
         name="Last Report", description="Report of the latest run as JSON", options={"HIDDEN"}
     )
+    last_check: bpy.props.StringProperty(
+        name="Last Check", description="What the latest check found, as JSON", options={"HIDDEN"}
+    )
 
     @property
     def symmetry(self) -> str:

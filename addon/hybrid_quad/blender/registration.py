@@ -11,9 +11,9 @@ try:
 except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
-from . import command, operators, panels, properties
+from . import check_operators, command, operators, panels, properties
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:

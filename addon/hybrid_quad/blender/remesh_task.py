@@ -121,6 +121,7 @@ def prepare_task(
     seed: int = 0,
     threads: int = 0,
     time_limit: float | None = None,
+    memory_limit: float | None = None,
 ) -> RemeshTask:
     """What an object's settings ask of its mesh as it is now.
 
@@ -141,6 +142,7 @@ def prepare_task(
         seed=seed,
         threads=threads,
         time_limit=time_limit,
+        memory_limit=memory_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
     source = read_source(obj, depsgraph, along_axes=bool(options.symmetry))

@@ -7,9 +7,9 @@ import json
 from typing import Any
 
 from ..core.check import check
-from ..core.mesh_io import read_mesh, replacing
+from ..core.mesh_io import read_line_elements, read_mesh, replacing
 from . import exit_codes
-from .messages import describe_defect
+from .messages import describe_defect, verdict_on
 
 
 def add_to(commands: Any) -> None:
@@ -28,11 +28,10 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Prints the defects of the input and returns the exit status."""
     vertices, polygons = read_mesh(arguments.input)
-    defects = check(vertices, polygons)
+    defects = check(vertices, polygons, edges=read_line_elements(arguments.input))
     print(f"{arguments.input}: {len(vertices)} vertices, {len(polygons.sizes)} faces")
     for defect in defects:
-        verdict = "repaired by remesh" if defect.repairable else "remesh refuses it"
-        print(f"  {describe_defect(defect.as_json(), verdict)}")
+        print(f"  {describe_defect(defect.as_json(), verdict_on(defect.as_json()))}")
     if not defects:
         print("nothing is wrong with it")
     if arguments.report:

@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return exit_codes.CANCELLED
     except MemoryError:
         say(f"{options.input}: this machine has not enough memory for the run; nothing was written")
-        return exit_codes.BUG
+        return exit_codes.CANCELLED
     except Exception as error:
         kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
         say(
@@ -70,7 +70,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="hybrid-quad",
         description="Pure-quad remeshing of surface meshes.",
         epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal "
-        "error; 4 cancelled or time limit. A result file is written only with 0.",
+        "error; 4 cancelled, time or memory limit. A result file is written only with 0.",
     )
     parser.add_argument("--version", action="version", version=f"hybrid-quad {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")

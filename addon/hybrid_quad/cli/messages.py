@@ -42,6 +42,13 @@ def describe_symmetry(symmetry: dict[str, Any]) -> str:
     return f"deviation from symmetry, of the diagonal: {', '.join(parts)}"
 
 
+def verdict_on(defect: dict[str, Any]) -> str:
+    """What remesh does about a defect in its JSON form."""
+    if not defect["repairable"]:
+        return "remesh refuses it"
+    return "left by remesh" if defect["kept"] else "repaired by remesh"
+
+
 def describe_defect(defect: dict[str, Any], verdict: str = "") -> str:
     """One line for a defect in its JSON form: what, where, and what becomes of it."""
     elements = defect["elements"]

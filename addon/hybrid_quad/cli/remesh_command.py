@@ -134,6 +134,7 @@ def add_to(commands: Any) -> None:
         "--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it"
     )
     parser.add_argument("--time-limit", type=float, metavar="SECONDS", help="stop with status 4 after this time")
+    parser.add_argument("--memory-limit", type=float, metavar="MB", help="stop with status 4 where more memory is taken")
     parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
     parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
@@ -194,6 +195,7 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
             seed=arguments.seed,
             threads=arguments.threads,
             time_limit=arguments.time_limit,
+            memory_limit=arguments.memory_limit,
         )
     except ValueError as error:
         raise UsageProblem(str(error)) from error
@@ -287,6 +289,8 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         status = "input_error"
     elif isinstance(error, mesh_io.MeshFileError):
         status = "unreadable_file"
+    elif isinstance(error, MemoryError):
+        status = "memory_limit"
     elif isinstance(error, (Cancelled, KeyboardInterrupt)):
         status = getattr(error, "code", "cancelled")
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import native
-from .mesh_arrays import FacesLike, IntArray, as_polygons, as_vertices
+from .mesh_arrays import FacesLike, IntArray, as_edges, as_polygons, as_vertices, edges_without_face
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +26,11 @@ class Defect:
     elements : (k,) or, for edges, (k, 2) int32
         0-based vertices, vertex pairs or faces of the input.
     repairable : bool
-        Whether :func:`~hybrid_quad.remesh` repairs it on the way.
+        Whether :func:`~hybrid_quad.remesh` takes the mesh all the same: it repairs this on the way, or leaves it.
     remedy : str
         What it does, or what the user can do.
+    kept : bool
+        Whether it leaves it as it is: nobody but the mesh's owner knows whether it is meant.
     """
 
     code: str
@@ -35,13 +38,14 @@ class Defect:
     elements: IntArray
     repairable: bool
     remedy: str
+    kept: bool = False
 
     @classmethod
     def from_native(cls, row: dict[str, Any]) -> Defect:
         elements: IntArray = np.asarray(row["elements"], np.int32)
         if row["element_kind"] == "edge":
             elements = elements.reshape(-1, 2)
-        return cls(row["code"], row["element_kind"], elements, row["repairable"], row["remedy"])
+        return cls(row["code"], row["element_kind"], elements, row["repairable"], row["remedy"], row["kept"])
 
     def __len__(self) -> int:
         return len(self.elements)
@@ -54,10 +58,13 @@ class Defect:
             "elements": self.elements.tolist(),
             "repairable": self.repairable,
             "remedy": self.remedy,
+            "kept": self.kept,
         }
 
 
-def check(vertices: npt.ArrayLike, faces: FacesLike) -> list[Defect]:
+def check(
+    vertices: npt.ArrayLike, faces: FacesLike, *, edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None
+) -> list[Defect]:
     """Finds what is wrong with a mesh, without changing anything.
 
     Parameters
@@ -66,6 +73,8 @@ def check(vertices: npt.ArrayLike, faces: FacesLike) -> list[Defect]:
         Positions.
     faces : (m, k) int, or a sequence of sequences of int
         0-based vertices of each polygon.
+    edges : (k, 2) int, optional
+        Edges of the mesh, where it has some besides those of its faces.
 
     Returns
     -------
@@ -73,5 +82,10 @@ def check(vertices: npt.ArrayLike, faces: FacesLike) -> list[Defect]:
         One for each kind of defect; empty for a sound mesh.
     """
     polygons = as_polygons(faces)
-    rows = native.load().check(as_vertices(vertices), polygons.sizes, polygons.vertices)
-    return [Defect.from_native(row) for row in rows]
+    points = as_vertices(vertices)
+    rows = native.load().check(points, polygons.sizes, polygons.vertices)
+    defects = [Defect.from_native(row) for row in rows]
+    loose = edges_without_face(as_edges(edges), polygons, len(points))
+    if len(loose):
+        defects.append(Defect("loose_edge", "edge", loose, True, "left out"))
+    return defects

@@ -29,12 +29,12 @@ class InputError(ValueError):
 
 
 class Cancelled(Exception):
-    """The caller asked to stop, or the time limit passed.
+    """The caller asked to stop, or the time or memory limit is reached.
 
     Attributes
     ----------
     code : str
-        ``"cancelled"`` or ``"time_limit"``.
+        ``"cancelled"``, ``"time_limit"`` or ``"memory_limit"``.
     """
 
     def __init__(self, message: str = "cancelled", code: str = "cancelled") -> None:

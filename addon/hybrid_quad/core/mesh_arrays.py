@@ -81,15 +81,7 @@ def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
 
 def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> None:
     """Raises InputError ``"unknown_edge"`` where a vertex pair is not an edge of a polygon; names all such pairs."""
-    if not len(edges):
-        return
-    following = np.arange(1, len(polygons.vertices) + 1)
-    filled = polygons.sizes > 0
-    ends = np.cumsum(polygons.sizes)[filled]
-    following[ends - 1] = ends - polygons.sizes[filled]
-    sides = np.stack([polygons.vertices, polygons.vertices[following]], axis=1)
-    known = np.isin(_edge_keys(edges, vertex_count), _edge_keys(sides, vertex_count))
-    unknown = edges[~known | ((edges < 0) | (edges >= vertex_count)).any(axis=1)]
+    unknown = edges_without_face(edges, polygons, vertex_count)
     if len(unknown):
         raise InputError(
             "unknown_edge",
@@ -97,6 +89,20 @@ def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> Non
             "edge",
             unknown.reshape(-1).tolist(),
         )
+
+
+def edges_without_face(edges: IntArray, polygons: Polygons, vertex_count: int) -> IntArray:
+    """Those of some vertex pairs that are no edge of any polygon."""
+    if not len(edges):
+        return edges
+    following = np.arange(1, len(polygons.vertices) + 1)
+    filled = polygons.sizes > 0
+    ends = np.cumsum(polygons.sizes)[filled]
+    following[ends - 1] = ends - polygons.sizes[filled]
+    sides = np.stack([polygons.vertices, polygons.vertices[following]], axis=1)
+    known = np.isin(_edge_keys(edges, vertex_count), _edge_keys(sides, vertex_count))
+    unknown: IntArray = edges[~known | ((edges < 0) | (edges >= vertex_count)).any(axis=1)]
+    return unknown
 
 
 def surface_area(vertices: FloatArray, polygons: Polygons) -> float:

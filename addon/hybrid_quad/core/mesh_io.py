@@ -96,6 +96,10 @@ def check_place(path: str | os.PathLike[str]) -> None:
         raise MeshFileError(f"{path}: the folder {path.parent} does not exist")
     if path.is_dir():
         raise MeshFileError(f"{path}: is a folder")
+    if path.exists() and not path.is_file():  # a device, say: it must not be replaced by a file
+        raise MeshFileError(f"{path}: is no regular file")
+    if not os.access(path.parent, os.W_OK):
+        raise MeshFileError(f"{path}: the folder {path.parent} cannot be written to")
 
 
 @contextlib.contextmanager
@@ -163,6 +167,28 @@ def read_counts(path: str | os.PathLike[str]) -> list[tuple[list[int], int]]:
             raise MeshFileError(f"{path}: line {number} is not a number and vertex indices: {line.strip()!r}") from None
         counts.append((vertices, count))
     return counts
+
+
+def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
+    """(k, 2) vertices of the edges that an .obj file has as lines (``l``), as its mesh counts them; others have none.
+
+    Raises
+    ------
+    MeshFileError
+    """
+    path = Path(path)
+    pairs: list[tuple[int, int]] = []
+    latest = 0
+    for line in _read_text(path).splitlines() if path.suffix.lower() == ".obj" else ():
+        latest += line.startswith(("v ", "v\t"))
+        if line.startswith(("l ", "l\t")):
+            try:
+                indices = [int(token.partition("/")[0]) for token in line.split()[1:]]
+            except ValueError:
+                raise MeshFileError(f"{path}: {line.strip()!r} is no line of vertices") from None
+            places = [index - 1 if index >= 0 else latest + index for index in indices]
+            pairs += zip(places, places[1:], strict=False)
+    return _as_int32([place for pair in pairs for place in pair]).reshape(-1, 2)
 
 
 def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:

@@ -59,6 +59,9 @@ class RemeshOptions:
         Threads to use, 0: as many as this process may. The result does not depend on it.
     time_limit : float or None
         Seconds after which the run stops with :class:`~hybrid_quad.Cancelled`.
+    memory_limit : float or None
+        Megabytes (of 2**20 bytes) of resident memory of the process at which it stops likewise; looked at twenty times a
+        second.
     """
 
     quads: int = 5000
@@ -76,6 +79,7 @@ class RemeshOptions:
     seed: int = 0
     threads: int = 0
     time_limit: float | None = None
+    memory_limit: float | None = None
 
     def __post_init__(self) -> None:
         _require(
@@ -132,6 +136,10 @@ class RemeshOptions:
             self.time_limit is None or (not math.isnan(self.time_limit) and self.time_limit > 0),
             f"time_limit must be > 0 seconds, not {self.time_limit!r}",
         )
+        _require(
+            self.memory_limit is None or (not math.isnan(self.memory_limit) and self.memory_limit > 0),
+            f"memory_limit must be > 0 MB, not {self.memory_limit!r}",
+        )
 
     def for_native(self) -> dict[str, Any]:
         """Keyword arguments of the compiled module's ``remesh``."""
@@ -150,6 +158,7 @@ class RemeshOptions:
             "seed": int(self.seed),
             "threads": int(self.threads) or usable_threads(),
             "time_limit": float(self.time_limit or 0.0),
+            "memory_limit": float(self.memory_limit or 0.0),
         }
 
 

@@ -86,6 +86,7 @@ def remesh(
     seed: int = 0,
     threads: int = 0,
     time_limit: float | None = None,
+    memory_limit: float | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
     dump_stages: PathLike | None = None,
@@ -154,6 +155,8 @@ def remesh(
         0: all that this process may use. The result does not depend on it.
     time_limit : float, optional
         Seconds after which the run stops.
+    memory_limit : float, optional
+        Megabytes of resident memory of the whole process at which the run stops; looked at twenty times a second.
     progress : callable(stage: str, fraction: float), optional
         Called at most twenty times a second; `fraction` of the whole run never falls.
     cancel : callable() -> bool, optional
@@ -172,7 +175,7 @@ def remesh(
     InputError
         If the input is no surface; names the elements.
     Cancelled
-        If `cancel` asked for it, or after `time_limit`. An exception raised in a callback, and KeyboardInterrupt, come
+        If `cancel` asked for it, or at `time_limit` or `memory_limit`. An exception raised in a callback, and KeyboardInterrupt, come
         back unchanged.
     InternalError
         If a promise between two stages did not hold: a bug of this package.
@@ -195,6 +198,7 @@ def remesh(
         seed=seed,
         threads=threads,
         time_limit=time_limit,
+        memory_limit=memory_limit,
     )
     return remesh_with_options(
         vertices,

@@ -8,8 +8,10 @@
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/manifold_gluing.h"
+#include "hybrid_quad/mesh/mesh_oddities.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
 #include "hybrid_quad/mesh/t_junctions.h"
+#include "hybrid_quad/mesh/vertex_spread.h"
 #include "hybrid_quad/mesh/vertex_welding.h"
 
 namespace hybrid_quad {
@@ -26,7 +28,7 @@ class MeshBuilder {
  public:
   explicit MeshBuilder(const PolygonSoup& soup) : soup_(soup) {}
 
-  BuiltMesh build();
+  BuiltMesh build(const RunContext& context);
   std::vector<Defect> defects;
 
  private:
@@ -42,10 +44,10 @@ class MeshBuilder {
   void drop_components_without_area(BuiltMesh& built);
 
   void note(const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
-    if (!elements.empty()) defects.push_back({code, kind, std::move(elements), true, remedy});
+    if (!elements.empty()) defects.push_back({code, kind, std::move(elements), true, false, remedy});
   }
   [[noreturn]] void refuse(const char* code, const std::string& message, const char* kind, std::vector<int> elements) {
-    defects.push_back({code, kind, elements, false, message});
+    defects.push_back({code, kind, elements, false, false, message});
     throw InputError(code, message, kind, std::move(elements));
   }
   int face_count() const { return static_cast<int>(soup_.face_sizes.size()); }
@@ -98,22 +100,12 @@ void MeshBuilder::check_positions() {
   }
   if (!bad.empty()) refuse("non_finite_vertex", "Vertices have coordinates that are no finite numbers.", "vertex", std::move(bad));
 
-  Vector3 median;
-  std::vector<double> values(used.size());
-  const auto nth = [&values](double share) {
-    const std::size_t i = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values.end());
-    return values[i];
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < used.size(); ++i) values[i] = soup_.positions[used[i]][axis];
-    median[axis] = nth(0.5);
-  }
-  const auto distance = [&](int v) { return (soup_.positions[v] - median).cwiseAbs().maxCoeff(); };
-  for (std::size_t i = 0; i < used.size(); ++i) values[i] = distance(used[i]);
-  const double usual = nth(0.9);
+  std::vector<Vector3> points;
+  for (const int v : used) points.push_back(soup_.positions[v]);
+  if (points.empty()) return;  // faces without corners
+  const VertexSpread spread = spread_of(points);
   for (const int v : used)
-    if (usual > 0 && distance(v) / usual > kOutlierFactor) bad.push_back(v);
+    if (spread.ratio(soup_.positions[v]) > kOutlierFactor) bad.push_back(v);
   if (!bad.empty())
     refuse("coordinate_outlier", "Vertices lie so far from all others that these shrink to a point.", "vertex", std::move(bad));
 }
@@ -311,18 +303,24 @@ void MeshBuilder::drop_components_without_area(BuiltMesh& built) {
   built = std::move(kept);
 }
 
-BuiltMesh MeshBuilder::build() {
+BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_faces();
   find_references();
   check_positions();
   normalize_positions();
+  context.checkpoint();
   make_triangles();
+  context.checkpoint();
   weld();
+  context.checkpoint();
   drop_duplicates();
+  context.checkpoint();
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
   note("t_junction", "vertex", split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_),
        "the edge beside it is split, which closes the crack");
+  context.checkpoint();
   BuiltMesh built = glue();
+  context.checkpoint();
   drop_components_without_area(built);
   return built;
 }
@@ -332,16 +330,17 @@ BuiltMesh MeshBuilder::build() {
 std::vector<Defect> check_mesh(const PolygonSoup& soup) {
   MeshBuilder builder(soup);
   try {
-    builder.build();
+    const BuiltMesh built = builder.build({});
+    for (Defect& oddity : oddities_of(built)) builder.defects.push_back(std::move(oddity));
   } catch (const InputError&) {
     // The last defect says so.
   }
   return std::move(builder.defects);
 }
 
-BuiltMesh build_mesh(const PolygonSoup& soup) {
+BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context) {
   MeshBuilder builder(soup);
-  BuiltMesh built = builder.build();
+  BuiltMesh built = builder.build(context);
   built.defects = std::move(builder.defects);
   return built;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -20,7 +21,8 @@ struct Defect {
   std::string code;          ///< e.g. "non_manifold_edge", "flipped_face", "duplicate_face", "zero_area_face", "isolated_vertex", "non_finite_vertex"
   std::string element_kind;  ///< "vertex", "edge" (elements are then vertex pairs, flattened) or "face"
   std::vector<int> elements;
-  bool repairable = false;
+  bool repairable = false;   ///< remesh goes on
+  bool kept = false;         ///< and leaves it as it is; false: repairs it
   std::string remedy;        ///< what remesh does about it, or what the user can do
 };
 
@@ -32,12 +34,12 @@ struct BuiltMesh {
   std::vector<Defect> defects;    ///< what was found, and repaired, on the way
 };
 
-/// Finds defects without changing anything.
+/// Finds defects without changing anything, and oddities_of() what can be remeshed.
 std::vector<Defect> check_mesh(const PolygonSoup& soup);
 
 /// Triangulates polygons (ear clipping in their best plane), drops what has no area, welds exact coincidences where that closes cracks,
 /// orients faces consistently, splits non-manifold edges and vertices into manifold sheets.
-/// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...
-BuiltMesh build_mesh(const PolygonSoup& soup);
+/// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...; Cancelled
+BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context = {});
 
 }  // namespace hybrid_quad

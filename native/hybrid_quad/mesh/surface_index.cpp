@@ -50,6 +50,9 @@ struct Box {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
   }
+  bool meets(const Vector3& l, const Vector3& h) const {
+    return (low.array() <= h.array()).all() && (l.array() <= high.array()).all();
+  }
   double squared_distance(const Vector3& p) const {
     return ((low - p).cwiseMax(p - high)).cwiseMax(0.0).squaredNorm();
   }
@@ -75,6 +78,11 @@ struct SurfaceIndex::Tree {
     if (filter.region >= 0 && !region.empty() && region[f] != filter.region) return false;
     return filter.min_cosine <= -1 || normal[f].dot(filter.normal) >= filter.min_cosine;
   }
+  Box box_of(int f) const {
+    Box box;
+    for (const int v : mesh.face(f)) box.add({mesh.position(v), mesh.position(v)});
+    return box;
+  }
   Vector3 nearest_on_face(const Vector3& p, int f) const {
     const auto& t = mesh.face(f);
     return nearest_on_triangle(p, mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
@@ -97,10 +105,7 @@ void SurfaceIndex::Tree::build() {
   normal.resize(face_count);
   order.resize(face_count);
   for (int f = 0; f < face_count; ++f) {
-    for (const int v : mesh.face(f)) {
-      boxes[f].low = boxes[f].low.cwiseMin(mesh.position(v));
-      boxes[f].high = boxes[f].high.cwiseMax(mesh.position(v));
-    }
+    boxes[f] = box_of(f);
     middle[f] = 0.5 * (boxes[f].low + boxes[f].high);
     normal[f] = mesh.normal(f);
     order[f] = f;
@@ -195,6 +200,26 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
   }
   if (best.face < 0) best.squared_distance = 0;
   return best;
+}
+
+bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std::function<bool(int)>& visit) const {
+  const Tree& tree = *tree_;
+  if (tree.nodes.empty()) return false;
+  int stack[kStackSize];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = tree.nodes[stack[--size]];
+    if (!node.box.meets(low, high)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.right;
+      stack[size++] = node.left;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i)
+      if (tree.box_of(tree.order[i]).meets(low, high) && visit(tree.order[i])) return true;
+  }
+  return false;
 }
 
 SurfacePoint SurfaceIndex::walk(const Vector3& p, int start) const {

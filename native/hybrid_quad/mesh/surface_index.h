@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,9 @@ class SurfaceIndex {
   SurfacePoint nearest(const Vector3& p) const { return nearest(p, Filter{}); }
   /// The nearest point found by walking from face `start` downhill over neighbours, never across a region's border.
   SurfacePoint walk(const Vector3& p, int start) const;
+
+  /// Calls visit(face) for the faces whose bounding boxes meet the box [low, high], until it returns true.
+  bool any_in_box(const Vector3& low, const Vector3& high, const std::function<bool(int)>& visit) const;
 
   const TriangleMesh& mesh() const;
 

@@ -30,6 +30,9 @@ struct Settings {
   double curl_weight = 1e-5;
 };
 constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
+/// Quads extracted in all passes, of those that fit, after which no other pass begins: where each takes several tries to come
+/// near the asked count, as on broken surfaces, all passes would take minutes. One try each stays below.
+constexpr double kMostWork = 12;
 constexpr double kFewMore = 1.1;  ///< no more quads than that for the sake of doubtful ones
 constexpr double kShorterWhereFlawed = 0.6;
 // Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
@@ -126,9 +129,10 @@ class ComponentRemesher {
     Extraction best;
     bool any = false;
     for (int i = 0; i < tries; ++i) {
-      const bool last = i + 1 == tries || search.at_least();
+      const bool last = i + 1 == tries || search.at_least() || search.is_stuck();
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
+      result_.extracted_quads += count;
       // What is as far off as that needs no improving, unless it is all there is.
       if (search.error(count) < kHopeless || (last && !any)) {
         if (options_.improve) improve(index, current);
@@ -141,6 +145,7 @@ class ComponentRemesher {
         any = true;
         if (last || (best.flawed == 0 && best.count_error < tolerance)) break;
       }
+      if (last) break;
       search.record(count);
     }
     return best;
@@ -311,10 +316,11 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
   ComponentResult best;
   std::string broken;
   bool any = false;
-  double begin = 0, end = 0.9;
+  double begin = 0, end = 0.9, extracted = 0;
   std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
     if (any && settings.quads_factor > kFewMore && best.flawed_quads == 0) break;
+    if (any && extracted > kMostWork * plan.quads) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
@@ -322,6 +328,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, wishes, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
+      extracted += result.extracted_quads;
       if (!any || badness(result) < badness(best))
         best = std::move(result);
       else

@@ -22,6 +22,7 @@ struct ComponentResult {
   int doubtful_quads = 0;  ///< these and smaller ones that only just pass that test
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
   int missed_counts = 0;  ///< quad edges too many or too few on curves that were to get a certain number
+  double extracted_quads = 0;  ///< in all tries of the pass
   int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;
 };

@@ -7,6 +7,14 @@ namespace hybrid_quad {
 
 double CountSearch::error(double got) const { return std::abs(std::log(std::max(got, 1.0) / wanted_)); }
 
+bool CountSearch::is_stuck() const {
+  constexpr double kFar = 0.3, kNextToNothing = 0.1;
+  if (samples_.size() < 2) return false;
+  const Sample &last = samples_.back(), &before = samples_[samples_.size() - 2];
+  const double step = std::abs(last.asked - before.asked);
+  return step > kFar && std::abs(last.got - before.got) < kNextToNothing * step;
+}
+
 void CountSearch::record(double got) {
   constexpr double kLeastSlope = 0.4, kMostSlope = 2.5, kLongestStep = 0.9;
   const Sample now{std::log(next_ / wanted_), std::log(std::max(got, 1.0) / wanted_)};

@@ -15,6 +15,8 @@ class CountSearch {
   bool at_least() const { return next_ <= least_; }
   /// What came out of asking for next().
   void record(double got);
+  /// Whether asking for far fewer or more made next to no difference: features leave no other number.
+  bool is_stuck() const;
   /// | log(got / wanted) |
   double error(double got) const;
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -149,6 +151,30 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
 
 }  // namespace
 
+namespace {
+
+/// The input's surface in coordinates in which its size and place make no difference, and what is asked of it there.
+void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& options, RunContext& context) {
+  std::vector<Vector3> positions = built.mesh.positions();
+  for (Vector3& p : positions) p = frame.inward(p);
+  built.mesh = TriangleMesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
+  options.edge_length /= frame.scale;
+  options.chord_error /= frame.scale;
+  if (context.on_snapshot)
+    context.on_snapshot = [frame, receive = context.on_snapshot](const Snapshot& s) { receive(in_scene(s, frame)); };
+}
+
+/// Where the way back rounds, corners are put exactly where the input has them.
+void move_outward(const UnitFrame& frame, const PolygonSoup& soup, QuadMesh& mesh) {
+  const bool is_exact = frame.centre.isZero(0);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const bool is_input_vertex = mesh.kind[v] == VertexKind::kCorner && mesh.anchor[v] >= 0;
+    mesh.positions[v] = is_input_vertex && !is_exact ? soup.positions[mesh.anchor[v]] : frame.outward(mesh.positions[v]);
+  }
+}
+
+}  // namespace
+
 RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   broken_promises += other.broken_promises;
   released_quads += other.released_quads;
@@ -161,15 +187,18 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   return *this;
 }
 
-RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
+RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options, const RunContext& scene_context) {
   RemeshResult result;
   RemeshReport& report = result.report;
   StageClock clock;
-  const BuiltMesh built = clock.measure("mesh", [&] {
-    context.in_stage("mesh", 0, 0.02).checkpoint();
+  RemeshOptions options = scene_options;
+  RunContext context = scene_context;
+  BuiltMesh built = clock.measure("mesh", [&] {
+    const RunContext mesh_context = context.in_stage("mesh", 0, 0.02);
+    mesh_context.checkpoint();
     check_wishes(soup, options);
     check_curve_counts(soup, options.curve_counts);
-    return build_mesh(soup);
+    return build_mesh(soup, mesh_context);
   });
   report.defects = built.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
@@ -179,6 +208,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
     report.symmetry = clock.measure("symmetry", [&] {
       return settle_symmetry(options.symmetry, built.mesh, context.in_stage("symmetry", 0.02, 0.02));
     });
+  const UnitFrame frame = unit_frame_of(built.mesh.positions(), report.symmetry.planes != 0);
+  move_inward(frame, built, options, context);
   const int images = image_count(report.symmetry.planes);
   const RemeshDomain domain = domain_of(built, options, report.symmetry.planes);
   const std::vector<Component> components = split_components(domain.mesh);
@@ -250,6 +281,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& options, const
   clock.measure("quality", [&] {
     measure_quality(result, plans, parts, whole, context.in_stage("quality", 0.97, 1.0));
   });
+  move_outward(frame, soup, result.mesh);
   report.stages = clock.records;
   return result;
 }

@@ -96,7 +96,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
                              const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
-  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01;
+  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
   context.checkpoint();
   ComponentPlan plan;
   plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / least_quads(mesh)));
@@ -121,8 +121,10 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
   const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < density.size(); ++v) plan.unlimited[v] = plan.length / density[v];
-  plan.target =
-      asked_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, density, FeatureSizeOptions{}, context);
+  FeatureSizeOptions feature_size;
+  // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
+  if (plan.length < kTiny * length) feature_size.least_ratio = kTinyRatio;
+  plan.target = asked_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, density, feature_size, context);
   shorten_for_counts(plan);
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
   return plan;

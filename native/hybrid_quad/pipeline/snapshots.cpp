@@ -4,6 +4,8 @@ namespace hybrid_quad {
 
 namespace {
 
+const std::string kTargetLength = "target length";
+
 Snapshot surface_snapshot(const TriangleMesh& mesh, const FeatureGraph& features, const std::string& stage) {
   Snapshot s;
   s.stage = stage;
@@ -30,7 +32,7 @@ Snapshot snapshot_of(const TriangleMesh& mesh, const FeatureGraph& features) {
 
 Snapshot snapshot_of(const WorkingSurface& surface) {
   Snapshot s = surface_snapshot(surface.mesh, surface.features, "working surface");
-  s.face_values["target length"] = surface.target_length;
+  s.face_values[kTargetLength] = surface.target_length;
   return s;
 }
 
@@ -81,6 +83,14 @@ Snapshot snapshot_of(const QuadMesh& quads, const std::string& stage) {
   for (const VertexKind k : quads.kind) s.vertex_values["kind"].push_back(static_cast<double>(k));
   for (const auto& e : quads.feature_edges) s.lines.push_back({e.a, e.b});
   return s;
+}
+
+Snapshot in_scene(Snapshot snapshot, const UnitFrame& frame) {
+  for (Vector3& p : snapshot.points) p = frame.outward(p);
+  const auto lengths = snapshot.face_values.find(kTargetLength);
+  if (lengths != snapshot.face_values.end())
+    for (double& length : lengths->second) length *= frame.scale;
+  return snapshot;
 }
 
 }  // namespace hybrid_quad

@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/base/snapshot.h"
+#include "hybrid_quad/mesh/unit_frame.h"
 
 namespace hybrid_quad {
 
@@ -16,5 +17,8 @@ Snapshot snapshot_of(const SpanningParameterization& param, const WorkingSurface
 /// the overlay's pieces with "quad" (-1 = singular region) and "patch" at faces
 Snapshot snapshot_of(const RegularQuads& regular, const SingularPatches& singular);
 Snapshot snapshot_of(const QuadMesh& quads, const std::string& stage);
+
+/// What a stage saw inside the frame, with points and lengths in the caller's units.
+Snapshot in_scene(Snapshot snapshot, const UnitFrame& frame);
 
 }  // namespace hybrid_quad

@@ -3,14 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#if defined(_WIN32)
-#include <windows.h>
-// clang-format off
-#include <psapi.h>
-// clang-format on
-#else
-#include <sys/resource.h>
-#endif
+#include "hybrid_quad/pipeline/process_memory.h"
 
 namespace hybrid_quad {
 
@@ -21,22 +14,6 @@ double now() {
 }
 
 }  // namespace
-
-double peak_memory_mb() {
-#if defined(_WIN32)
-  PROCESS_MEMORY_COUNTERS counters;
-  GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof(counters));
-  return static_cast<double>(counters.PeakWorkingSetSize) / (1024.0 * 1024.0);
-#else
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-#if defined(__APPLE__)
-  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
-#else
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-#endif
-#endif
-}
 
 StageClock::Booking::Booking(StageClock& clock, const std::string& name) : clock_(clock), index_(0), begin_(now()) {
   while (index_ < clock_.records.size() && clock_.records[index_].name != name) ++index_;

@@ -34,7 +34,4 @@ class StageClock {
   };
 };
 
-/// Peak resident memory of the process so far, in MB.
-double peak_memory_mb();
-
 }  // namespace hybrid_quad

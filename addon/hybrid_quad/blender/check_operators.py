@@ -1,0 +1,126 @@
+"""What is wrong with a mesh, and where: ``object.hybrid_quad_check`` and ``object.hybrid_quad_select_defect``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..core.check import Defect, check
+from ..core.edge_borders import edge_keys
+from ..core.mesh_arrays import IntArray
+from .mesh_source import MeshSource, read_source
+from .operators import message_of, problem_of
+
+_SELECT_MODES = {"vertex": (True, False, False), "edge": (False, True, False), "face": (False, False, True)}
+
+
+class _CheckOperator(bpy.types.Operator):
+    """Looks for defects in the active object's mesh as it is now."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = problem_of(context)
+        if problem:
+            cls.poll_message_set(problem)
+        return not problem
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            source = read_source(context.object, context.evaluated_depsgraph_get())
+            return self._act(context.object, source, check(source.vertices, source.polygons, edges=source.edges))
+        except Exception as error:
+            self.report({"ERROR"}, message_of(error))
+            return {"CANCELLED"}
+
+    def _act(self, obj: bpy.types.Object, source: MeshSource, defects: list[Defect]) -> set[str]:
+        raise NotImplementedError
+
+
+class OBJECT_OT_hybrid_quad_check(_CheckOperator):
+    """List what is wrong with the mesh, and what remeshing would do about it"""
+
+    bl_idname = "object.hybrid_quad_check"
+    bl_label = "Check Mesh"
+
+    def _act(self, obj: bpy.types.Object, source: MeshSource, defects: list[Defect]) -> set[str]:
+        rows = [{**defect.as_json(), "elements": len(defect)} for defect in defects]
+        obj.hybrid_quad.last_check = json.dumps(rows)
+        for row in rows:
+            self.report({"INFO"} if row["repairable"] else {"WARNING"}, describe_row(row))
+        if not rows:
+            self.report({"INFO"}, f'Nothing is wrong with "{obj.name}"')
+        return {"FINISHED"}
+
+
+class OBJECT_OT_hybrid_quad_select_defect(_CheckOperator):
+    """Select the elements that have this defect, in Edit Mode"""
+
+    bl_idname = "object.hybrid_quad_select_defect"
+    bl_label = "Select Defect"
+
+    code: bpy.props.StringProperty(name="Defect", description="Which defect, as the list of defects names it")
+
+    def _act(self, obj: bpy.types.Object, source: MeshSource, defects: list[Defect]) -> set[str]:
+        found = next((defect for defect in defects if defect.code == self.code and len(defect)), None)
+        if found is None:
+            self.report({"WARNING"}, f"There is no {self.code.replace('_', ' ')} (any more)")
+            return {"CANCELLED"}
+        mesh = obj.data
+        if (len(mesh.vertices), len(mesh.polygons)) != (len(source.vertices), len(source.polygons.sizes)):
+            self.report({"ERROR"}, "The modifiers make another mesh of this one: apply or disable them first")
+            return {"CANCELLED"}
+        _select(mesh, source, found)
+        bpy.context.tool_settings.mesh_select_mode = _SELECT_MODES[found.element_kind]
+        bpy.ops.object.mode_set(mode="EDIT")
+        return {"FINISHED"}
+
+
+def read_check(obj: bpy.types.Object) -> list[dict[str, Any]] | None:
+    """The defects that the latest check of an object found, with numbers of elements; None where it had no check."""
+    try:
+        found = json.loads(obj.hybrid_quad.last_check)
+    except ValueError:
+        return None
+    return found if isinstance(found, list) else None
+
+
+def describe_row(row: dict[str, Any]) -> str:
+    """A line of the list, for example ``"2 non manifold edges: repaired"``."""
+    fate = "refused" if not row["repairable"] else "left" if row["kept"] else "repaired"
+    count = f"{row['elements']:,} x " if row["elements"] else ""
+    return f"{count}{row['code'].replace('_', ' ')}: {fate}"
+
+
+def _select(mesh: bpy.types.Mesh, source: MeshSource, defect: Defect) -> None:
+    """Marks a defect's elements, and what belongs to them, as selected; all else as not."""
+    vertices = np.zeros(len(mesh.vertices), bool)
+    edges = np.zeros(len(mesh.edges), bool)
+    faces = np.zeros(len(mesh.polygons), bool)
+    if defect.element_kind == "face":
+        faces[defect.elements] = True
+        vertices[source.polygons.vertices[np.repeat(faces, source.polygons.sizes)]] = True
+        edges[_sides(mesh, source, faces)] = True
+    elif defect.element_kind == "edge":
+        keys = edge_keys(source.edges, len(vertices))
+        edges[np.isin(keys, edge_keys(defect.elements, len(vertices)))] = True
+        vertices[source.edges[edges]] = True
+    else:
+        vertices[defect.elements] = True
+    for elements, flags in ((mesh.vertices, vertices), (mesh.edges, edges), (mesh.polygons, faces)):
+        elements.foreach_set("select", flags)
+    mesh.update()
+
+
+def _sides(mesh: bpy.types.Mesh, source: MeshSource, faces: Any) -> IntArray:
+    """Edges of some faces."""
+    corners: IntArray = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", corners)
+    return corners[np.repeat(faces, source.polygons.sizes)]
+
+
+CLASSES = (OBJECT_OT_hybrid_quad_check, OBJECT_OT_hybrid_quad_select_defect)

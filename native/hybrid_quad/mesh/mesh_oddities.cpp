@@ -1,0 +1,70 @@
+#include "hybrid_quad/mesh/mesh_oddities.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "hybrid_quad/mesh/self_intersection.h"
+#include "hybrid_quad/mesh/unit_frame.h"
+#include "hybrid_quad/mesh/vertex_spread.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kFar = 20;  ///< times farther from the middle than nine tenths of all vertices
+
+void note(std::vector<Defect>& defects, const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
+  std::sort(elements.begin(), elements.end());
+  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  if (elements.empty()) return;
+  defects.push_back({code, kind, std::move(elements), true, true, remedy});
+}
+
+std::vector<int> intersecting_polygons(const BuiltMesh& built) {
+  const UnitFrame frame = unit_frame_of(built.mesh.positions(), false);
+  std::vector<Vector3> positions = built.mesh.positions();
+  for (Vector3& p : positions) p = frame.inward(p);
+  const TriangleMesh mesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
+  std::vector<int> polygons;
+  for (const int f : self_intersecting_faces(SurfaceIndex(mesh, {}))) polygons.push_back(built.input_face[f]);
+  return polygons;
+}
+
+/// Copies of one input vertex are not meant: where these come from, the mesh was cut and says so.
+std::vector<int> touching_vertices(const BuiltMesh& built) {
+  const auto key = [&built](int v) {
+    const Vector3& p = built.mesh.position(v);
+    return std::make_tuple(p.x(), p.y(), p.z());
+  };
+  std::vector<int> order(built.mesh.vertex_count()), touching;
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int v, int w) { return std::make_pair(key(v), v) < std::make_pair(key(w), w); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const int v = built.input_vertex[order[i - 1]], w = built.input_vertex[order[i]];
+    if (v == w || key(order[i - 1]) != key(order[i])) continue;
+    touching.push_back(v);
+    touching.push_back(w);
+  }
+  return touching;
+}
+
+std::vector<int> far_vertices(const BuiltMesh& built) {
+  const VertexSpread spread = spread_of(built.mesh.positions());
+  std::vector<int> far;
+  for (int v = 0; v < built.mesh.vertex_count(); ++v)
+    if (spread.ratio(built.mesh.position(v)) > kFar) far.push_back(built.input_vertex[v]);
+  return far;
+}
+
+}  // namespace
+
+std::vector<Defect> oddities_of(const BuiltMesh& built) {
+  std::vector<Defect> defects;
+  note(defects, "self_intersection", "face", intersecting_polygons(built), "stays: the quads intersect there as well");
+  note(defects, "touching_vertex", "vertex", touching_vertices(built), "stays: sheets that only touch are not joined");
+  note(defects, "far_vertex", "vertex", far_vertices(built), "stays, far from all others");
+  return defects;
+}
+
+}  // namespace hybrid_quad

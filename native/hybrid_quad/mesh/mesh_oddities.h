@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/mesh/mesh_builder.h"
+
+namespace hybrid_quad {
+
+/// What is unusual about a mesh that can be remeshed, and stays as it is, because only its owner knows whether it is meant:
+/// self_intersection (faces), touching_vertex (at one place with another, without being joined to it), far_vertex.
+std::vector<Defect> oddities_of(const BuiltMesh& built);
+
+}  // namespace hybrid_quad

@@ -1,0 +1,74 @@
+#include "hybrid_quad/pipeline/process_memory.h"
+
+#if defined(_WIN32)
+#include <windows.h>
+// clang-format off
+#include <psapi.h>
+// clang-format on
+#else
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#if defined(__APPLE__)
+#include <mach/mach.h>
+#endif
+#endif
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+
+}  // namespace
+
+#if defined(_WIN32)
+
+double peak_memory_mb() {
+  PROCESS_MEMORY_COUNTERS counters;
+  GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof(counters));
+  return static_cast<double>(counters.PeakWorkingSetSize) / kMegabyte;
+}
+
+double resident_memory_mb() {
+  PROCESS_MEMORY_COUNTERS counters;
+  GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof(counters));
+  return static_cast<double>(counters.WorkingSetSize) / kMegabyte;
+}
+
+#else
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#if defined(__APPLE__)
+  return static_cast<double>(usage.ru_maxrss) / kMegabyte;
+#else
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+#endif
+}
+
+#if defined(__APPLE__)
+
+double resident_memory_mb() {
+  mach_task_basic_info info{};
+  mach_msg_type_number_t count = MACH_TASK_BASIC_INFO_COUNT;
+  if (task_info(mach_task_self(), MACH_TASK_BASIC_INFO, reinterpret_cast<task_info_t>(&info), &count) != KERN_SUCCESS)
+    return peak_memory_mb();
+  return static_cast<double>(info.resident_size) / kMegabyte;
+}
+
+#else
+
+double resident_memory_mb() {
+  std::ifstream file("/proc/self/statm");
+  double size = 0, resident = 0;
+  if (!(file >> size >> resident)) return peak_memory_mb();
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / kMegabyte;
+}
+
+#endif
+#endif
+
+}  // namespace hybrid_quad

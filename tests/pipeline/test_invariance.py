@@ -1,0 +1,90 @@
+"""The size of a mesh and its place in space make no difference."""
+
+import numpy as np
+import pytest
+
+import hybrid_quad
+from hybrid_quad.core.validation import topology, violations
+from support import surfaces
+
+QUADS = 250
+
+
+def dyadic_torus():
+    """A torus whose coordinates are short binary fractions: any power of two and any such offset is exact."""
+    vertices, faces = surfaces.torus(20, 12)
+    return np.round(vertices * 2**12) / 2**12, faces
+
+
+@pytest.fixture(scope="module")
+def usual():
+    return hybrid_quad.remesh(*dyadic_torus(), quads=QUADS)
+
+
+@pytest.mark.parametrize("exponent", [-900, -100, -20, 20])
+def test_powers_of_two_give_the_same_bits(usual, exponent):
+    vertices, faces = dyadic_torus()
+    scale = 2.0**exponent
+    result = hybrid_quad.remesh(vertices * scale, faces, quads=QUADS)
+    assert np.array_equal(result.quads, usual.quads)
+    assert np.array_equal(result.vertices, usual.vertices * scale)
+    report, expected = dict(result.report), dict(usual.report)
+    for numbers in (report, expected):
+        del numbers["stages"]
+    assert report == expected
+
+
+@pytest.mark.parametrize("offset", [(2.0**20, 0.0, 0.0), (-(2.0**20), 2.0**19, 3.0), (1e4, 1e6, -1e6)])
+def test_places_give_the_same_quads(usual, offset):
+    vertices, faces = dyadic_torus()
+    result = hybrid_quad.remesh(vertices + offset, faces, quads=QUADS)
+    assert np.array_equal(result.quads, usual.quads)
+    assert np.abs(result.vertices - offset - usual.vertices).max() < 1e-9
+
+
+def test_single_precision_is_enough(usual):
+    vertices, faces = dyadic_torus()
+    result = hybrid_quad.remesh(vertices.astype(np.float32), faces, quads=QUADS)
+    assert np.array_equal(result.vertices, usual.vertices)
+
+
+def test_edge_lengths_scale_with_the_mesh():
+    vertices, faces = dyadic_torus()
+    expected = hybrid_quad.remesh(vertices, faces, edge_length=0.25)
+    result = hybrid_quad.remesh(vertices * 2.0**-30, faces, edge_length=0.25 * 2.0**-30)
+    assert np.array_equal(result.vertices, expected.vertices * 2.0**-30)
+
+
+@pytest.mark.parametrize("symmetry", ["", "y"])
+@pytest.mark.parametrize(("scale", "offset"), [(1e-30, 0.0), (1e6, 0.0), (1e-6, 0.0), (1.0, 1e6), (1e6, 1e6)])
+def test_other_scales_and_places_give_as_good_a_mesh(scale, offset, symmetry):
+    vertices, faces = surfaces.torus(20, 12)
+    moved = (vertices + np.array([offset, 0.0, offset])) * scale  # rounds: single edges may run otherwise
+    expected = hybrid_quad.remesh(vertices, faces, quads=QUADS, symmetry=symmetry)
+    result = hybrid_quad.remesh(moved, faces, quads=QUADS, symmetry=symmetry)
+    assert violations(result.vertices, result.quads) == []
+    assert topology(result.quads) == topology(expected.quads)
+    assert abs(len(result.quads) / len(expected.quads) - 1) < 0.1
+    assert result.report["hausdorff_percent"] < 1.5 * expected.report["hausdorff_percent"] + 0.1
+
+
+def test_corners_lie_where_the_input_has_them():
+    vertices, faces = surfaces.box(4)
+    moved = vertices / 3 + np.array([1e5, -7.1, 1 / 3])
+    result = hybrid_quad.remesh(moved, faces, quads=QUADS)
+    corners = result.vertices[result.vertex_kinds == 2]
+    assert len(corners) == 8
+    assert all((moved == corner).all(axis=1).any() for corner in corners)
+
+
+def test_snapshots_are_in_the_units_of_the_caller():
+    seen = []
+    vertices, faces = surfaces.torus(20, 12)
+    moved = 1e-3 * vertices + 5.0
+    hybrid_quad.remesh(moved, faces, quads=QUADS, on_snapshot=seen.append)
+    for snapshot in seen:
+        assert (snapshot.points >= moved.min(axis=0) - 1e-4).all()
+        assert (snapshot.points <= moved.max(axis=0) + 1e-4).all()
+    lengths = next(s.face_values["target length"] for s in seen if "target length" in s.face_values)
+    edge = np.sqrt(4 * np.pi**2 * 0.4 * 1e-6 / QUADS)
+    assert edge / 4 < lengths.mean() < 4 * edge
