@@ -102,6 +102,19 @@ py::list list_of_stages(const std::vector<StageRecord>& stages) {
   return result;
 }
 
+py::dict dict_of_field(const FieldRecord& field) {
+  const auto solution = [](int quarters, int kept) {
+    py::dict out;
+    out["singularities"] = quarters;
+    out["kept"] = kept;
+    return out;
+  };
+  py::dict out;
+  out["relaxed"] = solution(field.relaxed_quarters, field.relaxed_kept);
+  out["smoothest"] = solution(field.smoothest_quarters, field.smoothest_kept);
+  return out;
+}
+
 py::dict dict_of_report(const RemeshReport& report) {
   py::dict jacobian;
   jacobian["mean"] = report.scaled_jacobian_mean;
@@ -116,6 +129,8 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["vertices"] = report.vertices;
   result["irregular_vertices"] = report.irregular_vertices;
   result["field_singularities"] = report.field_singularities;
+  result["feature_singularities"] = report.feature_singularities;
+  result["field_solutions"] = dict_of_field(report.field);
   result["dislocations"] = report.dislocations;
   result["dislocations_found"] = report.dislocations_found;
   result["singular_area_fraction"] = report.singular_area_fraction;

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/split_cones.h"
 #include "hybrid_quad/grid_algebra/quarter_turn.h"
 #include "support/grid_surfaces.h"
@@ -186,6 +188,50 @@ TEST(FrameField, StrongConesAreSplit) {
   const FrameField field = solved(surface);
   EXPECT_TRUE(violations_of(field, surface).empty());
   for (const auto index : field.cone_index) EXPECT_LE(std::abs(index), 1);
+}
+
+TEST(FrameField, SolutionWithLessEnergyOrFewerConesIsKept) {
+  for (const TriangleMesh& mesh : {test::icosphere(4), test::torus(40, 20), test::box(6)}) {
+    const WorkingSurface surface = surface_of(mesh, 0.2, 40);
+    const FrameField field = solved(surface);
+    const FieldSolution solutions[] = {field.choice.relaxed, field.choice.smoothest};
+    const FieldSolution &kept = solutions[field.choice.kept], &other = solutions[1 - field.choice.kept];
+    EXPECT_FALSE(other.quarters < kept.quarters && other.energy < kept.energy);
+    EXPECT_EQ(field.singularity_count(), kept.quarters);
+  }
+}
+
+TEST(FrameField, ThreadsMakeNoDifference) {
+  const WorkingSurface surface = surface_of(moved(test::icosphere(4), Vector3(1, 0.6, 0.4).asDiagonal()), 0.1, 200);
+  RunContext two;
+  two.threads = 2;
+  const FrameField field = solved(surface), again = solve_frame_field(surface, FrameFieldOptions{}, two);
+  EXPECT_EQ(field.choice.kept, again.choice.kept);
+  for (int f = 0; f < surface.mesh.face_count(); ++f) ASSERT_EQ(field.du[f], again.du[f]);
+}
+
+TEST(SmoothestCrosses, FlatConnectionIsSolvedExactly) {
+  // A path of nodes, each a known turn from the one before, with its first node pulled: the field is parallel.
+  constexpr int kNodes = 40;
+  CrossSystem system;
+  system.diagonal.assign(kNodes, 0);
+  system.source.assign(kNodes, Complex(0, 0));
+  for (int i = 0; i + 1 < kNodes; ++i) {
+    system.links.push_back({i, i + 1, std::polar(1.0 + i % 3, 0.7 * i)});
+    system.diagonal[i] += 1.0 + i % 3;
+    system.diagonal[i + 1] += 1.0 + i % 3;
+  }
+  system.source[0] = std::polar(1.0, 0.3);
+  system.diagonal[0] += 1.0;
+  const auto levels = cross_hierarchy(system, 300, RunContext{});
+  for (const auto& z : {smoothest_crosses(levels, 3, RunContext{}), relax_crosses(levels, 10, RunContext{})}) {
+    double angle = 0.3;
+    for (int i = 0; i < kNodes; ++i) {
+      EXPECT_LT(std::abs(z[i] - std::polar(1.0, angle)), 1e-6) << i;
+      angle += 0.7 * i;
+    }
+    EXPECT_NEAR(cross_energy(system, z), -1.0, 1e-6);  // nothing but the pull's constant
+  }
 }
 
 TEST(FrameField, SeveralComponentsAndAnEmptyMesh) {

@@ -28,6 +28,7 @@ SURFACES = {
 
 REPORT_FIELDS = {
     *("status", "quads", "vertices", "irregular_vertices", "field_singularities", "dislocations"),
+    *("feature_singularities", "field_solutions"),
     *("singular_area_fraction", "patches", "scaled_jacobian", "hausdorff_percent", "feature_hausdorff_percent"),
     *("stages", "warnings", "seed", "version", "options"),
 }

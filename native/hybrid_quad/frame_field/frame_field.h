@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -7,12 +8,26 @@
 
 namespace hybrid_quad {
 
+/// One of the two solutions that are compared.
+struct FieldSolution {
+  int quarters = 0;   ///< sum of |index| over the vertices inside, on features and off them
+  double energy = 0;  ///< what is minimised, but for a constant that both have
+};
+
+/// How the field was chosen.
+struct FieldChoice {
+  FieldSolution relaxed;    ///< relaxed level by level with |z| = 1
+  FieldSolution smoothest;  ///< from the smoothest field without |z| = 1
+  int kept = 0;             ///< 0: relaxed, 1: smoothest
+};
+
 /// One frame per face, given by the rows of F^{-1}: an edge e of face f measures (du[f] . e, dv[f] . e) quads. Frames
 /// are combed: matchings are 0 across a spanning tree of the dual graph.
 struct FrameField {
   std::vector<Vector3> du, dv;          ///< #F, in the face's plane, det > 0 (du x dv along the normal); 1 / scene units
   std::vector<std::uint8_t> matching;   ///< 3 #F: (u, v) in the gauge of opposite(h)'s face = turned((u, v) in h's face, matching[h])
   std::vector<std::int8_t> cone_index;  ///< #V, quarters of a turn: +1 where three quads meet, -1 where five do; 0 on features
+  FieldChoice choice;
 
   int feature_cones = 0;                ///< irregular vertices that features force: see count_feature_cones
 
@@ -21,11 +36,7 @@ struct FrameField {
     const Vector3 e = mesh.edge_vector(h);
     return {du[h / 3].dot(e), dv[h / 3].dot(e)};
   }
-  int cone_count() const {
-    int n = 0;
-    for (const auto c : cone_index) n += c != 0;
-    return n;
-  }
+  int cone_count() const { return static_cast<int>(cone_index.size() - std::count(cone_index.begin(), cone_index.end(), 0)); }
   /// The fewest vertices inside the surface at which other than four quads meet, on features too.
   int singularity_count() const { return cone_count() + feature_cones; }
 };
@@ -35,6 +46,8 @@ struct FrameFieldOptions {
   int coarsest = 300;      ///< unknowns of the level that is solved directly
   /// Diffusion afterwards, in squared quad edges, one step each: what is smaller than a quad makes no cones.
   std::vector<double> diffusion_times{1.0, 1.0, 1.0};
+  /// Likewise for the other solution, which has cones to lose.
+  std::vector<double> smoothest_diffusion_times{16.0, 4.0, 1.0, 1.0};
   /// #F or empty: directions that a frame's axes should take, as vectors in the faces' planes; the length is the strength,
   /// 0 (free) to 1 (followed wherever features let it).
   std::vector<Vector3> guides;
@@ -44,8 +57,9 @@ struct FrameFieldOptions {
   double turn_for_lengths = 0;
 };
 
-/// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1), solved
-/// by multilevel relaxation of z = e^{4 i theta} on faces with the Levi-Civita connection.
+/// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1): z = e^{4 i
+/// theta} on faces with the Levi-Civita connection. Solved twice, by multilevel relaxation and from the smoothest field
+/// without |z| = 1, both finished by diffusion; the one with less energy and fewer cones is kept (docs/decisions/0011).
 /// \post sum of cone indices and of the features' turning agrees with the Euler characteristic (Poincare-Hopf)
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context);
 

@@ -1,9 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 
+#include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/frame_field/cross_diffusion.h"
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/soft_alignment.h"
 #include "hybrid_quad/frame_field/split_cones.h"
 
@@ -98,11 +103,68 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
   return cross;
 }
 
+/// A field on its way to being the best.
+struct Solution {
+  std::vector<double> directions;  ///< #F
+  FieldSolution record;
+};
+
 std::vector<double> directions_of(const CrossUnknowns& cross, const std::vector<Complex>& solution) {
   std::vector<double> directions(cross.z.size());
   for (std::size_t f = 0; f < cross.z.size(); ++f)
     directions[f] = std::arg(cross.unknown[f] < 0 ? cross.z[f] : solution[cross.unknown[f]]) / 4;
   return directions;
+}
+
+/// Quarters that the field turns at the vertices inside, on features or off them.
+int inner_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions) {
+  int sum = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (!mesh.is_boundary_vertex(v)) sum += std::abs(quarters_at(mesh, angles, directions, v));
+  return sum;
+}
+
+Solution finished(const WorkingSurface& surface, const FaceAngles& angles, const CrossUnknowns& cross, std::vector<Complex> z,
+                  const std::vector<double>& diffusion_times, const RunContext& context) {
+  std::vector<double> mass(z.size());
+  for (const double time : diffusion_times) {
+    for (std::size_t i = 0; i < z.size(); ++i) mass[i] = 2 * cross.diffusion_mass[i] / time;
+    diffuse_cross_system(cross.system, mass, z, context);
+  }
+  Solution solution;
+  solution.directions = directions_of(cross, z);
+  split_strong_cones(surface, angles, solution.directions);
+  solution.record.quarters = inner_quarters(surface.mesh, angles, solution.directions);
+  solution.record.energy = cross_energy(cross.system, z);
+  return solution;
+}
+
+constexpr double kCone = 50;  ///< about the energy of a cone within a disk of twenty quads
+
+/// What a field costs: its energy, and as much again for every cone. Who asks for the surface's bends to be followed gets the
+/// field that follows them best.
+double cost(const FieldSolution& solution, const FrameFieldOptions& options) {
+  return solution.energy + kCone * (1 - options.curvature_alignment) * solution.quarters;
+}
+
+/// The relaxed solution, which is the better one more often, unless the other gains half a cone: no change for nothing.
+int better_of(const std::array<Solution, 2>& both, const FrameFieldOptions& options) {
+  return cost(both[1].record, options) + 0.5 * kCone < cost(both[0].record, options) ? 1 : 0;
+}
+
+std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const FaceAngles& angles, const CrossUnknowns& cross,
+                                       const FrameFieldOptions& options, const RunContext& context) {
+  constexpr int kLinearSweeps = 3;
+  const std::vector<CrossLevel> levels = cross_hierarchy(cross.system, options.coarsest, context);
+  RunContext each = context;  // two at once have no common progress
+  each.on_progress = nullptr;
+  std::array<Solution, 2> both;
+  parallel_for(2, context.threads, [&](int i) {
+    both[i] = i == 0 ? finished(surface, angles, cross, relax_crosses(levels, options.sweeps, each), options.diffusion_times, each)
+                     : finished(surface, angles, cross, smoothest_crosses(levels, kLinearSweeps, each),
+                                options.smoothest_diffusion_times, each);
+  });
+  return both;
 }
 
 }  // namespace
@@ -112,14 +174,9 @@ FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOpti
   const FaceAngles angles(mesh);
   const CrossUnknowns cross = assemble_cross_system(surface, angles, options);
   context.checkpoint(0.1);
-  std::vector<Complex> z = relax_cross_system(cross.system, {options.sweeps, options.coarsest}, context);
-  std::vector<double> mass(z.size());
-  for (const double time : options.diffusion_times) {
-    for (std::size_t i = 0; i < z.size(); ++i) mass[i] = 2 * cross.diffusion_mass[i] / time;
-    diffuse_cross_system(cross.system, mass, z, context);
-  }
-  std::vector<double> directions = directions_of(cross, z);
-  split_strong_cones(surface, angles, directions);
+  std::array<Solution, 2> both = both_solutions(surface, angles, cross, options, context);
+  const int kept = better_of(both, options);
+  const std::vector<double>& directions = both[kept].directions;
 
   std::vector<Vector3> du(mesh.face_count()), dv(mesh.face_count());
   for (int f = 0; f < mesh.face_count(); ++f) {
@@ -128,7 +185,9 @@ FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOpti
     du[f] = c * basis.along + s * basis.across;
     dv[f] = c * basis.across - s * basis.along;
   }
-  return frame_field_from_rows(surface, std::move(du), std::move(dv));
+  FrameField field = frame_field_from_rows(surface, std::move(du), std::move(dv));
+  field.choice = {both[0].record, both[1].record, kept};
+  return field;
 }
 
 }  // namespace hybrid_quad

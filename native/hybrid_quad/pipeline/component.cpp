@@ -110,6 +110,8 @@ class ComponentRemesher {
       return field;
     });
     result_.field_singularities = unit.singularity_count();
+    result_.feature_singularities = unit.feature_cones;
+    result_.field_choice = unit.choice;
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(unit, surface_, "frame field"));
     return unit;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/pipeline/remesh.h"
@@ -13,7 +14,8 @@ namespace hybrid_quad {
 struct ComponentResult {
   QuadMesh mesh;              ///< anchors of corners are vertices of the plan's mesh
   int working_faces = 0;
-  int field_singularities = 0;
+  int field_singularities = 0, feature_singularities = 0;
+  FieldChoice field_choice;
   int dislocations_found = 0, dislocations = 0;
   double area = 0, singular_area = 0, combinatorial_area = 0;
   PatchRecord patches;

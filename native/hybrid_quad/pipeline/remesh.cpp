@@ -105,6 +105,10 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   RemeshReport& r = result.report;
   r.working_faces += component.working_faces;
   r.field_singularities += images * component.field_singularities;
+  r.feature_singularities += images * component.feature_singularities;
+  r.field.relaxed_quarters += images * component.field_choice.relaxed.quarters;
+  r.field.smoothest_quarters += images * component.field_choice.smoothest.quarters;
+  ++(component.field_choice.kept == 0 ? r.field.relaxed_kept : r.field.smoothest_kept);
   r.dislocations += images * component.dislocations;
   r.dislocations_found += images * component.dislocations_found;
   for (int i = 0; i < images; ++i) r.repairs += component.repairs;

@@ -99,11 +99,19 @@ struct CurveCountRecord {
   std::string reason;  ///< why it is another number; empty where it is not
 };
 
+/// The two solutions of the field, summed over components: sum of |index|, and in how many components it was kept.
+struct FieldRecord {
+  int relaxed_quarters = 0, smoothest_quarters = 0;
+  int relaxed_kept = 0, smoothest_kept = 0;
+};
+
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
   int irregular_vertices = 0;            ///< interior vertices of valence != 4
   int field_singularities = 0;           ///< inside the surface, on features too
+  int feature_singularities = 0;         ///< those of them that features force: corners, mostly
+  FieldRecord field;
   int dislocations = 0;                  ///< left after cancellation
   int dislocations_found = 0;
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
