@@ -26,12 +26,12 @@ def main() -> int:
     arguments = _parser().parse_args()
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
-    build = _build_id()
+    build = build_id()
     runs = list(_runs(arguments))
     if not runs:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
         return 2
-    done = {} if arguments.fresh else _read_results(out / "results.jsonl", build)
+    done = {} if arguments.fresh else read_results(out / "results.jsonl", build)
     missing = [run for run in runs if run.name not in done]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
     limits = Limits(seconds=arguments.time_limit, memory_mb=arguments.memory_mb)
@@ -108,11 +108,13 @@ def _manifold_models(folder: Path) -> Iterator[Path]:
                 yield folder / f"{row['name']}.obj"
 
 
-def _build_id() -> str:
+def build_id() -> str:
+    """Names the compiled library."""
     return hashlib.sha256(Path(str(native.load().__file__)).read_bytes()).hexdigest()[:12]
 
 
-def _read_results(path: Path, build: str) -> dict[str, Outcome]:
+def read_results(path: Path, build: str) -> dict[str, Outcome]:
+    """What is done, by the names of runs, as far as this build did it."""
     done = {}
     if path.exists():
         for line in path.read_text().splitlines():
