@@ -17,7 +17,7 @@ struct FieldSolution {
 /// How the field was chosen.
 struct FieldChoice {
   FieldSolution relaxed;    ///< relaxed level by level with |z| = 1
-  FieldSolution smoothest;  ///< from the smoothest field without |z| = 1
+  FieldSolution smoothest;  ///< from the smoothest field without |z| = 1; the relaxed one where lengths are asked for
   int kept = 0;             ///< 0: relaxed, 1: smoothest
 };
 

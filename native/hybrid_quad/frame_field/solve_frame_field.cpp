@@ -158,12 +158,15 @@ std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const Face
   const std::vector<CrossLevel> levels = cross_hierarchy(cross.system, options.coarsest, context);
   RunContext each = context;  // two at once have no common progress
   each.on_progress = nullptr;
+  // Lengths need cones of their own, close together: the long diffusion loses them, however smooth what is left.
+  const bool compares = !(options.turn_for_lengths > 0);
   std::array<Solution, 2> both;
-  parallel_for(2, context.threads, [&](int i) {
+  parallel_for(compares ? 2 : 1, context.threads, [&](int i) {
     both[i] = i == 0 ? finished(surface, angles, cross, relax_crosses(levels, options.sweeps, each), options.diffusion_times, each)
                      : finished(surface, angles, cross, smoothest_crosses(levels, kLinearSweeps, each),
                                 options.smoothest_diffusion_times, each);
   });
+  if (!compares) both[1] = both[0];
   return both;
 }
 
