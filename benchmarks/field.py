@@ -25,8 +25,8 @@ from sweep import build_id, read_results
 PEERS = ROOT.parent / "shared" / "peers" / "README.md"
 COUNTED = """
 *Field*: vertices inside the surface around which the field turns by a quarter or more, on feature curves and off them.
-A cube's corner is one (three quads meet there whatever is done), as it is an irregular vertex of the mesh; vertices on
-the boundary are neither.
+A cube's corner is one (three quads meet there whatever is done), as it is an irregular vertex of the mesh, and so is the
+vertex that a quad at an acute tip between features forces beside it; vertices on the boundary are neither.
 """
 
 
@@ -177,7 +177,7 @@ def _irregular_by_field(source: _Runs, models: Sequence[Path], counts: Sequence[
 
 def field_singularities(outcome: Outcome) -> int:
     """Of the field, inside the surface, on features and off them."""
-    return int(outcome.report["field_singularities"] + outcome.report["feature_singularities"])
+    return int(outcome.report["field_singularities"])
 
 
 def irregular_vertices(outcome: Outcome) -> int:

@@ -267,10 +267,9 @@ def _sample(name: str, view: tuple[float, float]) -> Model:
 def _remesh(model: Model, **options: object) -> hybrid_quad.RemeshResult:
     result = hybrid_quad.remesh(model.points, model.faces, **options)
     report = result.report
-    cones = report["field_singularities"] + report["feature_singularities"]
     names = {key: value for key, value in options.items() if np.isscalar(value)}
     print(
-        f"    {names}: {len(result.quads)} quads, {report['irregular_vertices']} irregular ({cones} in the field), "
+        f"    {names}: {len(result.quads)} quads, {report['irregular_vertices']} irregular ({report['field_singularities']} in the field), "
         f"mean SJ {report['scaled_jacobian']['mean']:.3f}, mean distance {report['mean_distance_percent']:.3f} %",
         flush=True,
     )

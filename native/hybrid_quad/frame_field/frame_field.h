@@ -27,9 +27,8 @@ struct FrameField {
   std::vector<Vector3> du, dv;          ///< #F, in the face's plane, det > 0 (du x dv along the normal); 1 / scene units
   std::vector<std::uint8_t> matching;   ///< 3 #F: (u, v) in the gauge of opposite(h)'s face = turned((u, v) in h's face, matching[h])
   std::vector<std::int8_t> cone_index;  ///< #V, quarters of a turn: +1 where three quads meet, -1 where five do; 0 on features
-  FieldChoice choice;
-
   int feature_cones = 0;                ///< irregular vertices that features force: see count_feature_cones
+  FieldChoice choice;
 
   /// (du, dv) along half-edge h, measured in the frame of its face.
   Vector2 grid_vector(const TriangleMesh& mesh, int h) const {
