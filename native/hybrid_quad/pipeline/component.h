@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/quality/quality.h"
+#include "hybrid_quad/pipeline/hard_guides.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 #include "hybrid_quad/pipeline/stage_clock.h"
@@ -12,6 +13,9 @@ namespace hybrid_quad {
 /// One connected component on its way through the stages, and what is to be said about it.
 struct ComponentResult {
   QuadMesh mesh;              ///< anchors of corners are vertices of the plan's mesh
+  FeatureGraph features;      ///< of the plan's mesh, whose curves the feature edges of `mesh` are on
+  std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
+  std::vector<GuideEdge> rings, chains;  ///< edges that hard guides cross, and that follow them
   int working_faces = 0;
   int field_singularities = 0;
   int dislocations_found = 0, dislocations = 0;
@@ -30,6 +34,6 @@ struct ComponentResult {
 /// Remeshes one connected component (paper 3 and 4, then improvement).
 /// \param whole  the surface that the component is part of
 ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const RemeshOptions& options, StageClock& clock, const RunContext& context);
+                                 const HardGuides& guides, const RemeshOptions& options, StageClock& clock, const RunContext& context);
 
 }  // namespace hybrid_quad
