@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -77,6 +78,23 @@ py::dict dict_of_patches(const PatchRecord& patches) {
   return result;
 }
 
+py::list list_of_guides(const std::vector<GuideRecord>& guides) {
+  py::list result;
+  for (const GuideRecord& guide : guides) {
+    py::dict row;
+    row["kind"] = guide.kind == GuideKind::kRing ? "ring" : "loop";
+    row["met"] = guide.is_met;
+    row["length"] = guide.fit.length;
+    row["edges"] = guide.fit.edges;
+    row["edge_length"] = guide.fit.edge_length;
+    row["distance"] = guide.fit.distance;
+    row["angle"] = guide.fit.angle;
+    row["connected"] = guide.fit.is_connected;
+    result.append(row);
+  }
+  return result;
+}
+
 py::dict dict_of_repairs(const RepairRecord& repairs) {
   py::dict result;
   result["broken_promises"] = repairs.broken_promises;
@@ -138,6 +156,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["repairs"] = dict_of_repairs(report.repairs);
   result["symmetry"] = dict_of_symmetry(report.symmetry);
   result["curve_counts"] = list_of_counts(report.curve_counts);
+  result["guides"] = list_of_guides(report.guides);
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;
@@ -189,6 +208,25 @@ py::dict default_options() {
   return result;
 }
 
+/// \param points  of all strokes, one after the other  \param sizes  points of each  \param rings  of each: a ring, or a loop
+std::vector<GuideStroke> strokes_from_arrays(const DoubleArray& points, const IntArray& sizes, const IntArray& rings) {
+  const std::vector<Vector3> all = vectors_from_array(points);
+  if (sizes.ndim() != 1 || rings.ndim() != 1 || sizes.size() != rings.size())
+    throw py::value_error("strokes need a size and a kind each");
+  std::vector<GuideStroke> strokes;
+  std::size_t begin = 0;
+  for (py::ssize_t i = 0; i < sizes.size(); ++i) {
+    const std::size_t end = begin + static_cast<std::size_t>(std::max(0, sizes.data()[i]));
+    if (end > all.size()) throw py::value_error("strokes have too few points");
+    GuideStroke stroke;
+    stroke.points.assign(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
+    stroke.kind = rings.data()[i] != 0 ? GuideKind::kRing : GuideKind::kLoop;
+    strokes.push_back(std::move(stroke));
+    begin = end;
+  }
+  return strokes;
+}
+
 RemeshResult run_without_gil(const PolygonSoup& soup, const RemeshOptions& options, const RunContext& context) {
   const py::gil_scoped_release release;
   return remesh(soup, options, context);
@@ -202,7 +240,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       "remesh",
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int quads,
                double edge_length, std::optional<double> sharp_angle, const IntArray& sharp_edges,
-               const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& density,
+               const DoubleArray& vertex_guides, const DoubleArray& face_guides, const DoubleArray& stroke_points,
+               const IntArray& stroke_sizes, const IntArray& stroke_rings, const DoubleArray& density,
                const DoubleArray& vertex_frames, const DoubleArray& face_frames,
                const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
@@ -218,6 +257,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.marked_edges = pairs_from_array(sharp_edges);
         options.vertex_guides = vectors_from_array(vertex_guides);
         options.face_guides = vectors_from_array(face_guides);
+        options.strokes = strokes_from_arrays(stroke_points, stroke_sizes, stroke_rings);
         options.density = values_from_array(density);
         options.vertex_frames = frames_from_array(vertex_frames);
         options.face_frames = frames_from_array(face_frames);
@@ -249,7 +289,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       },
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), py::kw_only(), py::arg("quads"),
       py::arg("edge_length"), py::arg("sharp_angle").none(true), py::arg("sharp_edges"),
-      py::arg("vertex_guides"), py::arg("face_guides"), py::arg("density"), py::arg("vertex_frames"),
+      py::arg("vertex_guides"), py::arg("face_guides"), py::arg("stroke_points"), py::arg("stroke_sizes"),
+      py::arg("stroke_rings"), py::arg("density"), py::arg("vertex_frames"),
       py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"),
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),

@@ -233,6 +233,23 @@ def _blender_matrix(matrix: np.ndarray):
     return Matrix(matrix.tolist())
 
 
+def test_guide_objects_say_what_their_lines_are_for():
+    obj = add_grid(cells=30)
+    loop, ring = _mesh_line(_line_points()), _curve("POLY", _line_points() + [0, 0.3, 0])
+    loop["hybrid_quad_guide_kind"] = "loop"
+    collection = bpy.data.collections.new("Lines")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(ring)
+    obj.hybrid_quad.guide_object, obj.hybrid_quad.guide_collection = loop, collection
+    obj.hybrid_quad.guide_objects_kind = "RING"
+    obj.hybrid_quad.quads = 2000
+    task = _task(obj)
+    assert [(stroke.kind, len(stroke.points)) for stroke in task.strokes] == [("loop", 9), ("ring", 9)]
+    assert task.guides() is None
+    guides = task.solve().report["guides"]
+    assert [(guide["kind"], guide["met"]) for guide in guides] == [("loop", True), ("ring", True)]
+
+
 def test_a_moved_objects_guides_lie_where_its_surface_is():
     line = _curve("POLY", _line_points() + np.array([7, 0, 0]))
     obj = add_grid(cells=30)

@@ -189,7 +189,7 @@ def test_lines_are_read_from_obj_and_text(tmp_path):
     obj.write_text("v 0 0 0\nv 1 0 0 # a comment\nv 1 1 0\nf 1 2 3\nl 1 2 3\nl -1 1\n")
     text.write_text("# two lines\n0 0 0\n1 0 0\n1 1 0\n\n\n1 1 0\n0 0 0\n")
     for path in (obj, text):
-        first, second = read_polylines(path)
+        (_, first), (_, second) = read_polylines(path)
         assert first.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
         assert second.tolist() == [[1, 1, 0], [0, 0, 0]]
 

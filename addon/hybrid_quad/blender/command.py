@@ -19,6 +19,7 @@ from ..core import report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
 from ..core.options import AXES, RemeshOptions
+from ..core.strokes import KINDS
 from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
@@ -125,6 +126,8 @@ def _parser() -> argparse.ArgumentParser:
             action=argparse.BooleanOptionalAction,
             help=f'use the attribute "hybrid_quad_{name}", or do not',
         )
+    for name, what in (("guide-kind", "guide objects"), ("annotations-kind", "annotations")):
+        parser.add_argument(f"--{name}", choices=KINDS, help=f"what {what} are for: a direction, a loop or a ring")
     parser.add_argument("--guide-radius", type=_positive_number, metavar="N", help="how far guides act, in quads")
     parser.add_argument("--adaptivity", type=_share, metavar="A", help="0: quads of one size; 1: by curvature")
     parser.add_argument(
@@ -246,6 +249,10 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
             setattr(settings, name, getattr(options, name))
     if options.guide_object is not None:
         settings.guide_object = _named(bpy.data.objects, options.guide_object, "object")
+    if options.guide_kind is not None:
+        settings.guide_objects_kind = options.guide_kind.upper()
+    if options.annotations_kind is not None:
+        settings.guide_annotations_kind = options.annotations_kind.upper()
     if options.guide_collection is not None:
         settings.guide_collection = _named(bpy.data.collections, options.guide_collection, "collection")
     if options.symmetry is not None:

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..core.mesh_arrays import FloatArray
+from ..core.strokes import KINDS, joined_lines
 
 # Object types whose lines can guide. GPENCIL became GREASEPENCIL in Blender 4.3.
 LINE_TYPES = ("CURVE", "CURVES", "FONT", "SURFACE", "MESH", "GPENCIL", "GREASEPENCIL")
@@ -18,13 +19,30 @@ _PENCIL_TYPES = ("GPENCIL", "GREASEPENCIL")
 _LINE_TYPES_OF_COLLECTION = tuple(kind for kind in LINE_TYPES if kind not in ("MESH", "FONT", "SURFACE"))
 
 
-def lines_of_settings(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[FloatArray]:
-    """Lines of the objects that an object's settings name as guides: (k, 3) points each, in world space."""
+# Custom property of a guide object, or its collection, that says what its lines are for: one of KINDS.
+KIND_PROPERTY = "hybrid_quad_guide_kind"
+
+
+def lines_of_settings(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[tuple[str, FloatArray]]:
+    """Lines of the objects that an object's settings name as guides: the kind, and (k, 3) points in world space, of each."""
     objects = [settings.guide_object] if settings.guide_object else []
     if settings.guide_collection:
         objects += [obj for obj in settings.guide_collection.all_objects if obj.type in _LINE_TYPES_OF_COLLECTION]
     unique = {obj.name_full: obj for obj in objects}
-    return [line for obj in unique.values() for line in lines_of_object(obj, depsgraph)]
+    default = settings.guide_objects_kind.lower()
+    named = {obj.name_full for obj in settings.guide_collection.all_objects} if settings.guide_collection else set()
+    of_collection = _own_kind(settings.guide_collection) or default
+    return [
+        (_own_kind(obj) or (of_collection if obj.name_full in named else default), line)
+        for obj in unique.values()
+        for line in joined_lines(lines_of_object(obj, depsgraph))
+    ]
+
+
+def _own_kind(owner: Any) -> str | None:
+    """What a guide object or collection says itself, or None."""
+    kind = str(owner.get(KIND_PROPERTY, "")).lower() if owner else ""
+    return kind if kind in KINDS else None
 
 
 def lines_of_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[FloatArray]:

@@ -124,11 +124,13 @@ class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "guide_collection", text="Collection")
         strength = column.column()
         strength.active = bool(settings.guide_object or settings.guide_collection)
+        strength.prop(settings, "guide_objects_kind", text="Kind")
         strength.prop(settings, "guide_objects_strength", text="Strength")
         column = layout.column()
         column.prop(settings, "use_guide_annotations")
         strength = column.column()
         strength.active = settings.use_guide_annotations
+        strength.prop(settings, "guide_annotations_kind", text="Kind")
         strength.prop(settings, "guide_annotations_strength", text="Strength")
         column = layout.column()
         column.prop(settings, "guide_marks", text="Edges")

@@ -26,6 +26,11 @@ RESULT_MODES = (
 )
 
 
+GUIDE_KINDS = (
+    ("DIRECTION", "Direction", "Quads near the lines turn along them"),
+    ("LOOP", "Loop", "Each line becomes a connected chain of edges"),
+    ("RING", "Ring", "Each line crosses edges at right angles through their middles"),
+)
 STRENGTH = {"default": 1.0, "min": 0.0, "max": 1.0, "subtype": "FACTOR"}
 NUMBERS = {
     name: getattr(RemeshOptions, name, neutral)
@@ -161,6 +166,12 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         name="Guide Collection",
         description="Quads follow all curves and grease pencils of this collection",
     )
+    guide_objects_kind: bpy.props.EnumProperty(
+        name="Kind",
+        description="What guide objects are for, where their own property hybrid_quad_guide_kind does not say otherwise",
+        items=GUIDE_KINDS,
+        default="DIRECTION",
+    )
     guide_objects_strength: bpy.props.FloatProperty(
         name="Object Strength", description="How strongly quads follow guide objects", **STRENGTH
     )
@@ -168,6 +179,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         name="Annotations",
         description="Let quads follow the scene's visible annotation strokes of this frame (draw them on the surface)",
         default=False,
+    )
+    guide_annotations_kind: bpy.props.EnumProperty(
+        name="Kind", description="What annotation strokes are for", items=GUIDE_KINDS, default="DIRECTION"
     )
     guide_annotations_strength: bpy.props.FloatProperty(
         name="Annotation Strength", description="How strongly quads follow annotation strokes", **STRENGTH

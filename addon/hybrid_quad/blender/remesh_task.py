@@ -14,9 +14,9 @@ from ..core.curve_counts import chains_of_edges
 from ..core.edge_borders import edge_keys
 from ..core.errors import InternalError
 from ..core.guide_values import guides_of_vertices
-from ..core.mesh_arrays import FloatArray, IntArray, surface_area
+from ..core.mesh_arrays import FloatArray, IntArray
 from ..core.options import RemeshOptions
-from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.remesh import RemeshResult, remesh_with_options, usual_length
 from ..core.strokes import Stroke, guides_from_strokes, strokes_of_segments, stronger_of
 from ..core.validation import violations
 from . import edge_marks, guide_lines
@@ -43,7 +43,7 @@ class RemeshTask:
     feature_marks : int
         Those of `edge_marks` that make an edge a feature.
     strokes : tuple of Stroke
-        Lines that quads follow, in the source's space.
+        Lines that quads follow or cross, in the source's space.
     stroke_radius : float
         How far strokes act, in edge lengths of the quads.
     use_guides, use_density : bool
@@ -75,14 +75,13 @@ class RemeshTask:
         painted = source.guides if self.use_guides else None
         vertex_count, face_count = len(source.vertices), len(source.polygons.sizes)
         # One for each face is no good beside strokes, nor where it could be taken for one for each vertex.
-        if source.guides_of_faces and painted is not None and (self.strokes or vertex_count == face_count):
+        directions = [stroke for stroke in self.strokes if stroke.kind == "direction"]
+        if source.guides_of_faces and painted is not None and (directions or vertex_count == face_count):
             painted = guides_of_vertices(painted, source.polygons, vertex_count)
-        if not self.strokes:
+        if not directions:
             return painted
-        length = self.options.edge_length or math.sqrt(
-            surface_area(source.vertices, source.polygons) / self.options.quads
-        )
-        drawn = guides_from_strokes(source.vertices, source.polygons, self.strokes, self.stroke_radius * length)
+        length = usual_length(source.vertices, source.polygons, self.options)
+        drawn = guides_from_strokes(source.vertices, source.polygons, directions, self.stroke_radius * length)
         return stronger_of(painted, drawn)
 
     def solve(
@@ -104,6 +103,7 @@ class RemeshTask:
             self.options,
             sharp_edges=self.marked_edges,
             curve_counts=self.curve_counts,
+            strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
             progress=progress,
             cancel=cancel,
             **{name: wish for name, wish in wishes.items() if wish is not None},
@@ -171,12 +171,15 @@ def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Dep
             return line - origin
         return np.linalg.solve(linear, (line - origin).T).T @ source.linear.T
 
-    lines = guide_lines.lines_of_settings(settings, depsgraph)
-    strokes += [Stroke(from_world(line), settings.guide_objects_strength) for line in lines]
+    strokes += [
+        Stroke(from_world(line), settings.guide_objects_strength, kind)
+        for kind, line in guide_lines.lines_of_settings(settings, depsgraph)
+    ]
     if settings.use_guide_annotations:
         lines = guide_lines.lines_of_annotations(depsgraph.scene)
-        strokes += [Stroke(from_world(line), settings.guide_annotations_strength) for line in lines]
-    return tuple(stroke for stroke in strokes if stroke.strength > 0)
+        kind = settings.guide_annotations_kind.lower()
+        strokes += [Stroke(from_world(line), settings.guide_annotations_strength, kind) for line in lines]
+    return tuple(stroke for stroke in strokes if stroke.strength > 0 or stroke.kind != "direction")
 
 
 def marks_of_result(task: RemeshTask, result: RemeshResult) -> tuple[IntArray, edge_marks.EdgeValues]:

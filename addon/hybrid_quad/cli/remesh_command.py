@@ -13,10 +13,10 @@ import numpy as np
 from .. import __version__
 from ..core import mesh_io, report
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.mesh_arrays import FloatArray, Polygons, surface_area
+from ..core.mesh_arrays import FloatArray
 from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
 from ..core.remesh import RemeshResult, remesh_with_options
-from ..core.strokes import Stroke, guides_from_strokes
+from ..core.strokes import KINDS, Stroke, joined_lines
 from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say
@@ -63,11 +63,19 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--guides",
         metavar="FILE",
-        help="lines that quads follow: an .obj file with l elements, or x y z a line, an empty line between two lines",
+        help="lines that guide the quads: an .obj file with l elements, or x y z a line, an empty line between two lines",
     )
-    parser.add_argument("--guide-radius", type=float, metavar="L", help="how far they act (default: two quads)")
     parser.add_argument(
-        "--guide-strength", type=float, default=1.0, metavar="S", help="how strongly, 0 to 1 (default 1)"
+        "--guide-kind",
+        choices=KINDS,
+        default=KINDS[0],
+        help="what they are for: quads near them turn along them (default), they become chains of edges (loop), or they "
+        "cross edges at right angles through their middles (ring); objects of an .obj file whose names begin with one of "
+        "these and an underscore are of that kind",
+    )
+    parser.add_argument("--guide-radius", type=float, metavar="L", help="how far directions act (default: two quads)")
+    parser.add_argument(
+        "--guide-strength", type=float, default=1.0, metavar="S", help="how strongly directions do, 0 to 1 (default 1)"
     )
     parser.add_argument(
         "--field-smoothness",
@@ -219,9 +227,6 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
     frames = _numbers(arguments.frames, 6, len(vertices))
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
         raise Cancelled("the time limit passed while the mesh was read", "time_limit")
-    wishes: dict[str, Any] = (
-        {} if arguments.guides is None else {"guides": _guides(arguments, options, vertices, polygons)}
-    )
     with ProgressBar(arguments.quiet) as bar:
         result = remesh_with_options(
             vertices,
@@ -233,7 +238,8 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
             frames=None if frames is None else frames.reshape(-1, 2, 3),
             progress=bar.update,
             dump_stages=arguments.dump_stages,
-            **wishes,
+            strokes=None if arguments.guides is None else _strokes(arguments),
+            stroke_radius=arguments.guide_radius,
         )
     problems = violations(result.vertices, result.quads)
     if problems:
@@ -241,16 +247,19 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
     return result
 
 
-def _guides(
-    arguments: argparse.Namespace, options: RemeshOptions, vertices: FloatArray, polygons: Polygons
-) -> FloatArray:
-    """(n, 3) directions along the lines of a file."""
-    lines = mesh_io.read_polylines(arguments.guides)
-    length = options.edge_length or math.sqrt(surface_area(vertices, polygons) / options.quads)
-    radius = 2 * length if arguments.guide_radius is None else arguments.guide_radius
-    if not length > 0:  # no surface: the run itself says so
-        return np.zeros_like(vertices)
-    return guides_from_strokes(vertices, polygons, [Stroke(line, arguments.guide_strength) for line in lines], radius)
+def _strokes(arguments: argparse.Namespace) -> list[Stroke]:
+    """The lines of a file, each of the kind that its object's name or the option says."""
+
+    def kind_of(name: str) -> str:
+        named = name.lower().partition("_")
+        return named[0] if named[1] and named[0] in KINDS else arguments.guide_kind
+
+    lines = [(kind_of(name), line) for name, line in mesh_io.read_polylines(arguments.guides)]
+    return [
+        Stroke(line, arguments.guide_strength, kind)
+        for kind in KINDS
+        for line in joined_lines([line for other, line in lines if other == kind])
+    ]
 
 
 def _numbers(path: str | None, width: int, count: int) -> FloatArray | None:

@@ -215,11 +215,11 @@ def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:
     return np.array(rows, np.float64).reshape(-1, width)
 
 
-def read_polylines(path: str | os.PathLike[str]) -> list[FloatArray]:
-    """Lines in space from a text file, (k, 3) float64 points each.
+def read_polylines(path: str | os.PathLike[str]) -> list[tuple[str, FloatArray]]:
+    """Lines in space from a text file: the name of the object that each is of, and (k, 3) float64 points.
 
-    Either the lines (``l``) of an .obj file, or three coordinates a line with an empty line between two lines in space;
-    ``#`` starts a comment.
+    Either the lines (``l``) of an .obj file, or three coordinates a line with an empty line between two lines in space,
+    which have no names; ``#`` starts a comment.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def read_polylines(path: str | os.PathLike[str]) -> list[FloatArray]:
         lines = read(rows)
     except _BadRow as bad:
         raise MeshFileError(f"{path}: line {bad.number} {bad}") from None
-    lines = [line for line in lines if len(line) > 1]
+    lines = [(name, line) for name, line in lines if len(line) > 1]
     if not lines:
         raise MeshFileError(f"{path}: has no line of two points or more")
     return lines
@@ -249,11 +249,14 @@ class _BadRow(Exception):
 _Rows = list[tuple[int, list[str]]]
 
 
-def _polylines_of_obj(rows: _Rows) -> list[FloatArray]:
+def _polylines_of_obj(rows: _Rows) -> list[tuple[str, FloatArray]]:
     points: list[FloatArray] = []
     lines = []
+    name = ""
     for number, tokens in rows:
-        if tokens[:1] == ["v"]:
+        if tokens[:1] in (["o"], ["g"]):
+            name = " ".join(tokens[1:])
+        elif tokens[:1] == ["v"]:
             points.append(_point_of(number, tokens[1:4]))
         elif tokens[:1] == ["l"]:
             try:
@@ -263,18 +266,18 @@ def _polylines_of_obj(rows: _Rows) -> list[FloatArray]:
             places = [index - 1 if index > 0 else len(points) + index for index in indices]
             if 0 in indices or not all(0 <= place < len(points) for place in places):
                 raise _BadRow(number, "names a vertex that is not there")
-            lines.append(np.array([points[place] for place in places]).reshape(-1, 3))
+            lines.append((name, np.array([points[place] for place in places]).reshape(-1, 3)))
     return lines
 
 
-def _polylines_of_text(rows: _Rows) -> list[FloatArray]:
+def _polylines_of_text(rows: _Rows) -> list[tuple[str, FloatArray]]:
     lines: list[list[FloatArray]] = [[]]
     for number, tokens in rows:
         if tokens:
             lines[-1].append(_point_of(number, tokens))
         elif lines[-1]:
             lines.append([])
-    return [np.array(line).reshape(-1, 3) for line in lines]
+    return [("", np.array(line).reshape(-1, 3)) for line in lines]
 
 
 def _point_of(number: int, tokens: list[str]) -> FloatArray:

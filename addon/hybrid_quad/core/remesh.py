@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy.typing as npt
 from . import native, report
 from .curve_counts import CurveCount, as_curve_counts
 from .errors import InputError
+from .guide_values import guides_of_vertices
 from .mesh_arrays import (
     FacesLike,
     FloatArray,
@@ -26,6 +28,14 @@ from .mesh_arrays import (
 )
 from .options import MOST_QUADS, RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
+from .strokes import (
+    RADIUS_IN_EDGES,
+    Stroke,
+    checked_strokes,
+    guides_from_strokes,
+    native_strokes,
+    stronger_of,
+)
 from .wishes import DENSITY_BOUNDS, native_wishes
 
 ProgressCallback = Callable[[str, float], object]
@@ -72,6 +82,8 @@ def remesh(
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
     curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
+    strokes: Iterable[Stroke | npt.ArrayLike] | None = None,
+    stroke_radius: float | None = None,
     density: npt.ArrayLike | None = None,
     frames: npt.ArrayLike | None = None,
     field_smoothness: float = 0.5,
@@ -120,6 +132,12 @@ def remesh(
         Directions that edges should take at the n vertices or m faces, in the coordinates of `vertices`; a direction, its
         opposite and those across it are the same. Zero: free; the length is the strength, and cut at 1. Where there are
         as many vertices as faces, of the vertices.
+    strokes : iterable of Stroke or (k, 3) float, optional
+        Lines on or near the surface that quads should follow (:class:`Stroke` of kind ``"direction"``, or plain points),
+        that become chains of edges (``"loop"``), or that cross edges at right angles through their middles (``"ring"``).
+        The report's ``guides`` says for every loop and ring, in their order, how near it comes.
+    stroke_radius : float, optional
+        How far strokes of kind ``"direction"`` act, in the units of `vertices`; two edge lengths where nothing is said.
     density : (n,) float, optional
         For every vertex, 1 where nothing is asked, 2 for edges half as long; cut at 0.1 and 10. The number of quads stays
         the asked one; with `edge_length`, the lengths are `edge_length` / `density`.
@@ -207,6 +225,8 @@ def remesh(
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,
         guides=guides,
+        strokes=strokes,
+        stroke_radius=stroke_radius,
         density=density,
         frames=frames,
         progress=progress,
@@ -224,6 +244,8 @@ def remesh_with_options(
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
     curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
+    strokes: Iterable[Stroke | npt.ArrayLike] | None = None,
+    stroke_radius: float | None = None,
     density: npt.ArrayLike | None = None,
     frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
@@ -236,6 +258,8 @@ def remesh_with_options(
 
     points, polygons, marked = as_vertices(vertices), as_polygons(faces), as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
+    lines = checked_strokes(strokes)
+    guides = _with_directions(points, polygons, options, guides, lines, stroke_radius)
     wishes = native_wishes(guides, density, frames, len(points), len(polygons.sizes))
     _require_enough_length(points, polygons, options, wishes["density"])
     center = _symmetry_center(points, options)
@@ -246,6 +270,7 @@ def remesh_with_options(
         sharp_edges=marked,
         curve_counts=as_curve_counts(curve_counts),
         **wishes,
+        **native_strokes(lines, center),
         progress=progress,
         cancel=cancel,
         snapshot=_snapshot_receiver(dump_stages, on_snapshot),
@@ -255,6 +280,31 @@ def remesh_with_options(
         result["vertices"] += center
     result["report"] = report.finished(result["report"], options, __version__)
     return RemeshResult(**result)
+
+
+def _with_directions(
+    points: FloatArray,
+    polygons: Polygons,
+    options: RemeshOptions,
+    guides: npt.ArrayLike | None,
+    strokes: list[Stroke],
+    radius: float | None,
+) -> npt.ArrayLike | None:
+    """`guides`, with those of the strokes that are directions: at each place the stronger."""
+    directions = [stroke for stroke in strokes if stroke.kind == "direction"]
+    length = usual_length(points, polygons, options)
+    if not directions or not length > 0:  # no surface: the run itself says so
+        return guides
+    drawn = guides_from_strokes(points, polygons, directions, RADIUS_IN_EDGES * length if radius is None else radius)
+    given = None if guides is None else np.asarray(guides, np.float64)
+    if given is not None and given.shape != drawn.shape and given.shape == (len(polygons.sizes), 3):
+        given = guides_of_vertices(given, polygons, len(points))
+    return stronger_of(given, drawn) if given is None or given.shape == drawn.shape else given
+
+
+def usual_length(points: FloatArray, polygons: Polygons, options: RemeshOptions) -> float:
+    """Length of the quads' edges that the options ask for."""
+    return options.edge_length or math.sqrt(surface_area(points, polygons) / options.quads)
 
 
 def _symmetry_center(points: FloatArray, options: RemeshOptions) -> FloatArray | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from .edge_borders import polygon_normals
 from .mesh_arrays import FacesLike, FloatArray, Polygons, as_polygons, as_vertices, unit_vectors
 from .surface_points import fan_triangles, nearest_on_surface, pairs_within
 
+KINDS = ("direction", "loop", "ring")
+RADIUS_IN_EDGES = 2.0  # how far directions act where nobody says
+
 _SAMPLES_PER_RADIUS = 4
 _MOST_SAMPLES = 4000
 # Cosine between normals below which a place is on another side of the surface than the stroke: a thin sheet's back.
@@ -20,18 +23,23 @@ _SAME_SIDE = 0.3
 
 
 class Stroke(NamedTuple):
-    """A line that quads should follow, or run square to.
+    """A line that quads should follow, or cross.
 
     Attributes
     ----------
     points : (k, 3) float64
         Its corners in order; a closed one repeats the first.
     strength : float
-        0..1.
+        0..1, of a direction.
+    kind : {"direction", "loop", "ring"}
+        ``"direction"``: quads near it are turned along it, as :func:`guides_from_strokes` says. ``"loop"``: it becomes a
+        connected chain of edges. ``"ring"``: it crosses edges at right angles through their middles. A loop or ring ends
+        where it is drawn to end; its ends are joined where they are within half an edge length of each other.
     """
 
     points: FloatArray
     strength: float = 1.0
+    kind: str = "direction"
 
 
 def guides_from_strokes(
@@ -51,7 +59,7 @@ def guides_from_strokes(
     vertices : (n, 3) float
     faces : (m, k) int, or a sequence of sequences of int
     strokes : iterable of Stroke or (k, 3) float
-        Plain points count as a stroke of strength 1.
+        Plain points count as a stroke of strength 1. Of every kind only the direction is used.
     radius : float
         In the units of `vertices`.
 
@@ -88,6 +96,61 @@ def guides_from_strokes(
     falloff = np.where(away < radius, 0, 0.5 * np.maximum(1 - away / np.maximum(longest, 1e-300), 0.1))
     crosses.add(vertex, passed, falloff, strengths[owner], tangents, normal)
     return crosses.directions()
+
+
+def checked_strokes(strokes: Iterable[Stroke | npt.ArrayLike] | None) -> list[Stroke]:
+    """Strokes with their points as arrays.
+
+    Raises
+    ------
+    ValueError
+        If a stroke is no list of finite points, or has another kind or strength than there are.
+    """
+    return [] if strokes is None else [_as_stroke(stroke) for stroke in strokes]
+
+
+def native_strokes(strokes: list[Stroke], origin: FloatArray | None = None) -> dict[str, Any]:
+    """Loops and rings as keyword arguments of the compiled module's ``remesh``.
+
+    Parameters
+    ----------
+    origin : (3,) float64, optional
+        Subtracted from the points.
+    """
+    hard = [stroke for stroke in strokes if stroke.kind != "direction"]
+    points = np.concatenate([stroke.points for stroke in hard] or [np.zeros((0, 3))])
+    return {
+        "stroke_points": points if origin is None else points - origin,
+        "stroke_sizes": np.array([len(stroke.points) for stroke in hard], np.int32),
+        "stroke_rings": np.array([stroke.kind == "ring" for stroke in hard], np.int32),
+    }
+
+
+def joined_lines(lines: list[FloatArray]) -> list[FloatArray]:
+    """Lines put together where exactly two of them end at the same point, as the edges of a mesh do."""
+    ends: dict[bytes, list[int]] = {}
+    for index, line in enumerate(lines):
+        for end in (line[0], line[-1]):
+            ends.setdefault(end.tobytes(), []).append(index)
+    used = [False] * len(lines)
+    result = []
+    # Lines with a free end first, so that only closed chains begin anywhere.
+    free = [any(len(ends[end.tobytes()]) != 2 for end in (line[0], line[-1])) for line in lines]
+    for start in sorted(range(len(lines)), key=lambda index: not free[index]):
+        if used[start]:
+            continue
+        used[start] = True
+        line = lines[start]
+        chain = [line[::-1] if len(ends[line[0].tobytes()]) == 2 and len(ends[line[-1].tobytes()]) != 2 else line]
+        while len(at_end := ends[chain[-1][-1].tobytes()]) == 2:
+            following = at_end[0] if used[at_end[1]] else at_end[1]
+            if used[following]:
+                break
+            used[following] = True
+            line = lines[following]
+            chain.append(line if (line[0] == chain[-1][-1]).all() else line[::-1])
+        result.append(np.concatenate([chain[0], *(part[1:] for part in chain[1:])]))
+    return result
 
 
 def strokes_of_segments(segments: FloatArray, strength: float) -> list[Stroke]:
@@ -151,13 +214,15 @@ class _Crosses:
 
 
 def _as_stroke(stroke: Stroke | npt.ArrayLike) -> Stroke:
-    points, strength = stroke if isinstance(stroke, Stroke) else (stroke, 1.0)
+    points, strength, kind = stroke if isinstance(stroke, Stroke) else (stroke, 1.0, "direction")
     points = as_vertices(points)
+    if kind not in KINDS:
+        raise ValueError(f"a stroke's kind must be one of {', '.join(KINDS)}, not {kind!r}")
     if not np.isfinite(points).all():
         raise ValueError("a stroke has points that are not finite")
     if not 0 <= strength <= 1:
         raise ValueError(f"a stroke's strength must be between 0 and 1, not {strength!r}")
-    return Stroke(points, float(strength))
+    return Stroke(points, float(strength), kind)
 
 
 def _without_points(segments: FloatArray, strengths: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -52,6 +52,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   smoothing.chord_spring = options.chord_spring;
   smoothing.aspect_power = options.aspect_power;
   smoothing.guides = options.guides;
+  smoothing.rings = options.rings;
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
@@ -72,7 +73,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     report.connectivity_moves += moves;
     report.inverted_after = untangle(piece, smoother, context);
   }
-  report.mended = mend_flawed(piece, smoother, whole, options.usual_size, context);
+  if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.usual_size, context);
   quads = piece.mesh.extract();
   return report;
 }

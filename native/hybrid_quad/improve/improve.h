@@ -3,6 +3,7 @@
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/frame_field/guide_map.h"
+#include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/surface_index.h"
 
@@ -15,6 +16,7 @@ struct ImproveOptions {
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double aspect_power = 0.7;       ///< 0: quads become squares; 1: they keep whatever aspect they have
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
+  const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
   double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (flawed_quads)
 };

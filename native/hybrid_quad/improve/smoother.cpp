@@ -205,6 +205,7 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
 
 GuidePull Smoother::guide_pull(int v, double size) const {
   GuidePull sum;
+  if (options_.rings != nullptr) options_.rings->add_to(sum, v, piece_.mesh.positions, vertex_normal(v), size);
   if (options_.guides == nullptr || options_.guides->empty()) return sum;
   const auto guide_at = [&](int w) { return options_.guides->at(piece_.face[w], piece_.mesh.positions[w]); };
   const Vector3 own = guide_at(v), normal = piece_.input.normal(piece_.face[v]);
@@ -297,8 +298,10 @@ double Smoother::move_on_curve(int v, double size) {
     return stiffness * ((ahead - t) * (ahead - t) + (behind + t) * (behind + t));
   };
   before += spring(0);
-  const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead);
-  double hessian = std::abs(d.hessian[0] + 4 * stiffness);
+  GuidePull rings;
+  if (options_.rings != nullptr) options_.rings->add_to(rings, v, piece_.mesh.positions, vertex_normal(v), size);
+  const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead) - 2 * rings.pull.dot(tangent);
+  double hessian = std::abs(d.hessian[0] + 4 * stiffness) + 2 * tangent.dot(rings.stiffness * tangent);
   if (!(hessian > 0)) return 0;
   double t = -gradient / hessian;
   if (!std::isfinite(t) || std::abs(t) < 1e-7 * size) return 0;
@@ -307,7 +310,7 @@ double Smoother::move_on_curve(int v, double size) {
   for (int k = 0; k < kBacktracks; ++k) {
     const double target = curve.normalized(arc + t);
     const Vector3 position = curve.at(target);
-    if (energy(v, position) + spring(t) < before) {
+    if (energy(v, position) + spring(t) + rings.change(position - start) < before) {
       piece_.arc[v] = target;
       piece_.mesh.positions[v] = position;
       return (position - start).norm();

@@ -5,6 +5,7 @@
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/improve/corner_energy.h"
+#include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
@@ -14,16 +15,8 @@ struct SmootherOptions {
   double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
   const GuideMap* guides = nullptr;  ///< on the input, may be null
   double guide_weight = 10;      ///< of the squared angle between an edge and a guide, against the corners' shape
+  const RingPulls* rings = nullptr;  ///< may be null
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
-};
-
-/// What it costs a vertex to move by d while its edges should keep to a guide's directions:
-///   constant - 2 pull . d + d . stiffness d.
-struct GuidePull {
-  Vector3 pull = Vector3::Zero();
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-
-  double change(const Vector3& d) const { return d.dot(stiffness * d) - 2 * pull.dot(d); }
 };
 
 /// Moves vertices one at a time by Newton steps on the corner energy of the quads around (Gauss-Seidel in vertex order),

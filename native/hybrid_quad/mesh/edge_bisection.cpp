@@ -10,23 +10,31 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr int kMarked = 0;  ///< chain i: kMarked + 1 + i
-
 std::array<int, 2> sorted_pair(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// On half-edges of marked edges and chains which of these they are, -1 elsewhere.
-std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges, const std::vector<EdgeSet>& chains) {
-  std::map<std::array<int, 2>, int> mark_of;
-  for (const auto& e : marked_edges) mark_of[sorted_pair(e[0], e[1])] = kMarked;
+/// What an edge is one of.
+struct Mark {
+  int marked = -1, chain = -1;
+};
+
+/// The edges that are marked or on a chain, and on half-edges which of these they are, -1 elsewhere.
+std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges, const std::vector<EdgeSet>& chains,
+                          std::vector<Mark>& marks) {
+  std::map<std::array<int, 2>, Mark> mark_of;
+  for (std::size_t i = 0; i < marked_edges.size(); ++i)
+    mark_of[sorted_pair(marked_edges[i][0], marked_edges[i][1])].marked = static_cast<int>(i);
   for (std::size_t i = 0; i < chains.size(); ++i)
-    for (const auto& e : chains[i]) mark_of[sorted_pair(e[0], e[1])] = kMarked + 1 + static_cast<int>(i);
-  std::vector<int> marks(mesh.halfedge_count(), -1);
-  if (mark_of.empty()) return marks;
+    for (const auto& e : chains[i]) mark_of[sorted_pair(e[0], e[1])].chain = static_cast<int>(i);
+  std::vector<int> number(mesh.halfedge_count(), -1);
+  if (mark_of.empty()) return number;
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const auto found = mark_of.find(sorted_pair(mesh.from(h), mesh.to(h)));
-    if (found != mark_of.end()) marks[h] = found->second;
+    if (found == mark_of.end() || number[h] >= 0) continue;
+    number[h] = static_cast<int>(marks.size());
+    if (mesh.opposite(h) >= 0) number[mesh.opposite(h)] = number[h];
+    marks.push_back(found->second);
   }
-  return marks;
+  return number;
 }
 
 struct LongEdge {
@@ -41,7 +49,8 @@ struct LongEdge {
 
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
                                const std::vector<EdgeSet>& chains) {
-  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains));
+  std::vector<Mark> marks;
+  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks));
   std::priority_queue<LongEdge> queue;
   const auto push = [&](int h) {
     const double squared = edited.edge_vector(h).squaredNorm();
@@ -64,10 +73,11 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
   BisectedMesh out;
   out.chains.resize(chains.size());
   for (int h = 0; h < compacted.mesh.halfedge_count(); ++h) {
-    const int mark = compacted.halfedge_curve[h];
-    if (mark < 0 || compacted.mesh.opposite(h) >= h) continue;
+    if (compacted.halfedge_curve[h] < 0 || compacted.mesh.opposite(h) >= h) continue;
+    const Mark& mark = marks[compacted.halfedge_curve[h]];
     out.marked_edges.push_back({compacted.mesh.from(h), compacted.mesh.to(h)});
-    if (mark > kMarked) out.chains[mark - kMarked - 1].push_back(out.marked_edges.back());
+    out.source.push_back(mark.marked);
+    if (mark.chain >= 0) out.chains[mark.chain].push_back(out.marked_edges.back());
   }
   out.mesh = std::move(compacted.mesh);
   return out;

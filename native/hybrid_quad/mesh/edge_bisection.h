@@ -12,6 +12,7 @@ using EdgeSet = std::vector<std::array<int, 2>>;  ///< pairs of neighbouring ver
 struct BisectedMesh {
   TriangleMesh mesh;             ///< vertices keep their ids, new ones follow
   EdgeSet marked_edges;          ///< the parts of the marked edges and of the chains'
+  std::vector<int> source;       ///< of each part: the marked edge it is of, one of those given; -1: only of a chain
   std::vector<EdgeSet> chains;   ///< the parts of each
 };
 

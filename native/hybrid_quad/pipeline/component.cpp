@@ -10,6 +10,7 @@
 #include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/guide_curves_in_quads.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
@@ -45,6 +46,8 @@ struct Extraction {
   int patch_count = 0, combinatorial_count = 0;
   double singular_area = 0, combinatorial_area = 0;
   RepairRecord repairs;
+  FeatureGraph features;     ///< whose curves the feature edges are on, where some became rings
+  std::vector<GuideEdge> rings, chains;
   int flawed = 0;            ///< quads, after improvement
   int missed = 0;            ///< missed_counts()
   double count_error = 0;    ///< | log(count / asked) |, after improvement
@@ -62,13 +65,15 @@ class ComponentRemesher {
  public:
   /// \param whole  the surface that the component is part of
   ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                    const RemeshOptions& options, const Settings& settings, StageClock& clock, const RunContext& context)
+                    const HardGuides& guides, const RemeshOptions& options, const Settings& settings, StageClock& clock,
+                    const RunContext& context)
       : plan_(plan),
         mesh_(plan.mesh),
         whole_(whole),
         doubtful_size_(kDoubtfulSize * std::sqrt(whole.mesh().total_area())),
         least_size_(kLeastSize * std::sqrt(whole.mesh().total_area())),
         wishes_(wishes),
+        guides_(guides),
         options_(options),
         settings_(settings),
         clock_(clock),
@@ -139,9 +144,10 @@ class ComponentRemesher {
       if (search.error(count) < kHopeless || (last && !any)) {
         if (options_.improve) improve(index, current);
         make_mirrorable(index, current.mesh);
+        current.missed = missed_counts(plan_.features, current.mesh);
+        settle_hard_guides(current);
         count = static_cast<double>(current.mesh.quads.size());
         current.count_error = search.error(count);
-        current.missed = missed_counts(plan_.features, current.mesh);
         const auto rank = [](const Extraction& e) { return std::make_tuple(e.flawed, e.missed, e.count_error); };
         if (!any || rank(current) < rank(best)) best = std::move(current);
         any = true;
@@ -162,6 +168,10 @@ class ComponentRemesher {
     result_.repairs += best.repairs;
     result_.missed_counts = best.missed;
     result_.mesh = std::move(best.mesh);
+    result_.rings = std::move(best.rings);
+    result_.chains = std::move(best.chains);
+    result_.features = plan_.guides.empty() ? plan_.features : std::move(best.features);
+    result_.curve_planes = seam_planes(mesh_, result_.features, options_.symmetry.planes);
   }
 
   Extraction extract_by_any_means(const FrameField& unit, double asked) {
@@ -252,13 +262,9 @@ class ComponentRemesher {
   void improve(const SurfaceIndex& index, Extraction& extraction) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
     clock_.measure("improve", [&] {
-      ImproveOptions o;
-      o.fit = options_.fit;
-      o.target_length = length_;
-      o.usual_size = doubtful_size_;
+      ImproveOptions o = improve_options();
       const GuideMap guides = guides_on(wishes_, mesh_);
       o.guides = &guides;
-      if (wishes_.most_stretch > 1) o.aspect_power = 1;
       const ImproveReport report = improve_quads(extraction.mesh, mesh_, plan_.features, index, o, context, &whole_);
       extraction.repairs.mended_places += report.mended;
       extraction.repairs.restored_quads += report.restored_quads;
@@ -267,16 +273,41 @@ class ComponentRemesher {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
   }
 
+  ImproveOptions improve_options() const {
+    ImproveOptions o;
+    o.fit = options_.fit;
+    o.target_length = length_;
+    o.usual_size = doubtful_size_;
+    if (wishes_.most_stretch > 1) o.aspect_power = 1;
+    return o;
+  }
+
+  void settle_hard_guides(Extraction& extraction) {
+    if (plan_.guides.empty()) return;
+    const RunContext context = context_.in_stage("hard guides", 0.97, 0.97);
+    clock_.measure("hard guides", [&] {
+      const GuideMap directions = guides_on(wishes_, mesh_);
+      ImproveOptions o = improve_options();
+      o.guides = &directions;
+      GuidedQuads guided{std::move(extraction.mesh), plan_.features, {}, {}, extraction.flawed};
+      settle_guides(guided, plan_, guides_, o, options_, whole_, context);
+      extraction.mesh = std::move(guided.mesh);
+      extraction.features = std::move(guided.features);
+      extraction.rings = std::move(guided.rings);
+      extraction.chains = std::move(guided.chains);
+      extraction.flawed = guided.flawed;
+    });
+    require_sound("hard guides", violations_of(extraction.mesh));
+    keep_clear_of_planes(extraction.mesh, options_.symmetry.planes);
+  }
+
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(const SurfaceIndex& index, QuadMesh& mesh) {
     if (options_.symmetry.planes == 0) return;
     if (open_seams(mesh, plan_.curve_planes) > 0) {
       order_feature_edges(mesh, mesh_, plan_.features);
-      ImproveOptions o;
+      ImproveOptions o = improve_options();
       o.edit_connectivity = false;
-      o.fit = options_.fit;
-      o.target_length = length_;
-      o.usual_size = doubtful_size_;
       if (options_.improve)
         improve_quads(mesh, mesh_, plan_.features, index, o, context_.in_stage("improve", 0.97, 0.97), &whole_);
       // What mends flawed quads changes connectivity in any case; there is no third round.
@@ -290,6 +321,7 @@ class ComponentRemesher {
   const SurfaceIndex& whole_;
   double doubtful_size_, least_size_;  // scene units
   const Wishes& wishes_;
+  const HardGuides& guides_;
   const RemeshOptions& options_;
   const Settings& settings_;
   StageClock& clock_;
@@ -314,7 +346,8 @@ double badness(const ComponentResult& result) {
 }  // namespace
 
 ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const RemeshOptions& options, StageClock& clock, const RunContext& context) {
+                                 const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
+                                 const RunContext& context) {
   ComponentResult best;
   std::string broken;
   bool any = false;
@@ -327,7 +360,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
       const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, limits) : ComponentPlan{};
-      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, wishes, options, settings, clock, pass).run();
+      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;

@@ -3,6 +3,7 @@
 #include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/quality/quality.h"
+#include "hybrid_quad/pipeline/hard_guides.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 #include "hybrid_quad/pipeline/stage_clock.h"
@@ -13,6 +14,9 @@ namespace hybrid_quad {
 /// One connected component on its way through the stages, and what is to be said about it.
 struct ComponentResult {
   QuadMesh mesh;              ///< anchors of corners are vertices of the plan's mesh
+  FeatureGraph features;      ///< of the plan's mesh, whose curves the feature edges of `mesh` are on
+  std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
+  std::vector<GuideEdge> rings, chains;  ///< edges that hard guides cross, and that follow them
   int working_faces = 0;
   int field_singularities = 0, feature_singularities = 0;
   FieldChoice field_choice;
@@ -32,6 +36,6 @@ struct ComponentResult {
 /// Remeshes one connected component (paper 3 and 4, then improvement).
 /// \param whole  the surface that the component is part of
 ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const RemeshOptions& options, StageClock& clock, const RunContext& context);
+                                 const HardGuides& guides, const RemeshOptions& options, StageClock& clock, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/snapshots.h"
+#include "hybrid_quad/pipeline/guided_input.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -65,23 +67,26 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Marked half-edges of the whole mesh as pairs of a component's vertices.
-std::vector<std::array<int, 2>> marked_in(const Component& component, const std::vector<char>& is_marked) {
-  std::vector<std::array<int, 2>> out;
-  for (int h = 0; h < component.mesh.halfedge_count(); ++h)
-    if (component.mesh.opposite(h) < h && is_marked[3 * component.face[h / 3] + h % 3])
-      out.push_back({component.mesh.from(h), component.mesh.to(h)});
+/// Marked edges of the whole mesh in a component.
+MarkedEdges marked_in(const Component& component, const RemeshDomain& domain) {
+  MarkedEdges out;
+  for (int h = 0; h < component.mesh.halfedge_count(); ++h) {
+    const int of_whole = 3 * component.face[h / 3] + h % 3;
+    if (component.mesh.opposite(h) >= h || !domain.is_marked[of_whole]) continue;
+    out.ends.push_back({component.mesh.from(h), component.mesh.to(h)});
+    out.guides.push_back(domain.guides[of_whole]);
+  }
   return out;
 }
 
 /// The usual edge length where the caller says how long edges are to be, or how far from the surface; 0 where it is the
 /// number of quads that counts. \param chords  receives chord_lengths_on() each component
-double given_length(const std::vector<Component>& components, const std::vector<std::vector<std::array<int, 2>>>& marked,
+double given_length(const std::vector<Component>& components, const std::vector<MarkedEdges>& marked,
                     const RemeshOptions& options, double diagonal, std::vector<std::vector<double>>& chords,
                     const RunContext& context) {
   double quads = 0, area = 0;
   for (std::size_t i = 0; i < components.size(); ++i) {
-    chords.push_back(chord_lengths_on(components[i].mesh, marked[i], options, diagonal, context));
+    chords.push_back(chord_lengths_on(components[i].mesh, marked[i].ends, options, diagonal, context));
     if (chords.back().empty()) continue;
     quads += quads_for_lengths(components[i].mesh, chords.back());
     area += components[i].mesh.total_area();
@@ -90,8 +95,9 @@ double given_length(const std::vector<Component>& components, const std::vector<
 }
 
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
+/// \param guided  gets those of the component
 void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& component, const std::vector<int>& input_vertex,
-            int images) {
+            int images, GuidedEdges& guided) {
   const int base = static_cast<int>(result.mesh.positions.size());
   result.mesh.positions.insert(result.mesh.positions.end(), m.positions.begin(), m.positions.end());
   result.mesh.kind.insert(result.mesh.kind.end(), m.kind.begin(), m.kind.end());
@@ -102,6 +108,8 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
     result.mesh.quads.push_back(q);
   }
   for (auto e : m.feature_edges) result.mesh.feature_edges.push_back({e.a + base, e.b + base, e.curve});
+  for (const GuideEdge& e : component.rings) guided.rings.push_back({e.a + base, e.b + base, e.guide});
+  for (const GuideEdge& e : component.chains) guided.chains.push_back({e.a + base, e.b + base, e.guide});
   RemeshReport& r = result.report;
   r.working_faces += component.working_faces;
   r.field_singularities += images * component.field_singularities;
@@ -118,6 +126,19 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   r.patches.morse_smale += images * component.patches.morse_smale;
   r.patches.combinatorial += images * component.patches.combinatorial;
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
+}
+
+/// The component's quads with feature edges by the curves of the plan, which a ring may have joined.
+QuadMesh on_curves_of(const ComponentPlan& plan, const ComponentResult& component) {
+  QuadMesh mesh = component.mesh;
+  std::vector<int> planned(component.features.curves.size(), -1);
+  for (int h = plan.mesh.halfedge_count() - 1; h >= 0; --h)
+    if (component.features.is_feature(h)) {
+      int& curve = planned[component.features.halfedge_curve[h]];
+      curve = curve < 0 ? plan.features.halfedge_curve[h] : std::min(curve, plan.features.halfedge_curve[h]);
+    }
+  for (QuadMesh::FeatureEdge& e : mesh.feature_edges) e.curve = planned[e.curve];
+  return mesh;
 }
 
 /// Quads that lie alone between two features: two opposite edges of theirs are feature edges.
@@ -148,7 +169,7 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
   r.mean_distance_percent = distance.mean;
   const double diagonal = whole.mesh().diagonal();
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double percent = feature_distance(parts[i].mesh, plans[i].mesh, plans[i].features, context);
+    const double percent = feature_distance(parts[i].mesh, plans[i].mesh, parts[i].features, context);
     r.feature_hausdorff_percent = std::max(r.feature_hausdorff_percent, percent * plans[i].mesh.diagonal() / diagonal);
   }
 }
@@ -164,6 +185,8 @@ void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& option
   built.mesh = TriangleMesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
   options.edge_length /= frame.scale;
   options.chord_error /= frame.scale;
+  for (GuideStroke& stroke : options.strokes)
+    for (Vector3& p : stroke.points) p = frame.inward(p);
   if (context.on_snapshot)
     context.on_snapshot = [frame, receive = context.on_snapshot](const Snapshot& s) { receive(in_scene(s, frame)); };
 }
@@ -197,44 +220,50 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   StageClock clock;
   RemeshOptions options = scene_options;
   RunContext context = scene_context;
-  BuiltMesh built = clock.measure("mesh", [&] {
+  BuiltMesh as_given = clock.measure("mesh", [&] {
     const RunContext mesh_context = context.in_stage("mesh", 0, 0.02);
     mesh_context.checkpoint();
     check_wishes(soup, options);
     check_curve_counts(soup, options.curve_counts);
     return build_mesh(soup, mesh_context);
   });
-  report.defects = built.defects;
+  report.defects = as_given.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
 
   if (options.symmetry.planes != 0 || options.symmetry.detect)
     report.symmetry = clock.measure("symmetry", [&] {
-      return settle_symmetry(options.symmetry, built.mesh, context.in_stage("symmetry", 0.02, 0.02));
+      return settle_symmetry(options.symmetry, as_given.mesh, context.in_stage("symmetry", 0.02, 0.02));
     });
-  const UnitFrame frame = unit_frame_of(built.mesh.positions(), report.symmetry.planes != 0);
-  move_inward(frame, built, options, context);
+  const UnitFrame frame = unit_frame_of(as_given.mesh.positions(), report.symmetry.planes != 0);
+  move_inward(frame, as_given, options, context);
+  const GuidedInput input = clock.measure("mesh", [&] {
+    return with_guides(std::move(as_given), report.input_vertices, options, context.in_stage("mesh", 0.02, 0.02));
+  });
+  const BuiltMesh& built = input.built;
+  report.warnings = input.warnings;
   const int images = image_count(report.symmetry.planes);
-  const RemeshDomain domain = domain_of(built, options, report.symmetry.planes);
+  const RemeshDomain domain = domain_of(built, input.options, input.edge_guides, report.symmetry.planes);
+  const HardGuides guides{input.guides.sets, positive_traces(input.guides.traces, report.symmetry.planes)};
   const std::vector<Component> components = split_components(domain.mesh);
   report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());
   const double area = domain.mesh.total_area();
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
-  std::vector<std::vector<std::array<int, 2>>> marked;
+  std::vector<MarkedEdges> marked;
   CurveCountLedger counts(options.curve_counts, soup, images);
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
-    for (const Component& c : components) marked.push_back(marked_in(c, domain.is_marked));
+    for (const Component& c : components) marked.push_back(marked_in(c, domain));
     std::vector<std::vector<double>> chords;
     const double given = given_length(components, marked, domain.options, built.mesh.diagonal(), chords, plan_context);
     const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
     double weighted_area = 0;  // at density 1
     for (std::size_t i = 0; i < components.size(); ++i) {
       const Component& c = components[i];
-      wishes.push_back(
-          wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i], domain.options, even_length, chords[i], plan_context));
+      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i].ends, domain.options, even_length,
+                                 chords[i], plan_context));
       weighted_area += area_by_density(c.mesh, wishes.back().density);
     }
     const double length = given > 0 ? given : std::sqrt(images * weighted_area / std::max(1, options.quads));
@@ -248,17 +277,19 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
 
   const SurfaceIndex whole(built.mesh, {});
   std::vector<ComponentResult> parts;
+  GuidedEdges guided;
   double done = 0, singular_area = 0, combinatorial_area = 0;
   for (std::size_t i = 0; i < components.size(); ++i) {
     const double share = components[i].mesh.total_area() / area;
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], whole, wishes[i], domain.options, clock, part_context));
-    counts.record(plans[i], parts.back().mesh);
+    parts.push_back(remesh_component(plans[i], whole, wishes[i], guides, domain.options, clock, part_context));
+    counts.record(plans[i], on_curves_of(plans[i], parts.back()));
     std::vector<int> input_vertex;
-    for (const int v : components[i].vertex) input_vertex.push_back(domain.input_vertex[v]);
-    append(result, whole_of(parts.back(), plans[i], components[i].mesh, marked[i], domain.options), parts.back(), input_vertex, images);
+    for (const int v : components[i].vertex)
+      input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
+    append(result, whole_of(parts.back(), components[i].mesh, marked[i].ends, domain.options), parts.back(), input_vertex, images, guided);
     singular_area += parts.back().singular_area;
     combinatorial_area += parts.back().combinatorial_area;
     done += share;
@@ -283,6 +314,11 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     if (!violations.empty()) throw InternalError("symmetry", violations.front());
   }
   clock.measure("quality", [&] {
+    report.guides = measure_guides(options.strokes, guides.traces, result.mesh, guided, report.warnings);
+    for (GuideRecord& guide : report.guides) {
+      guide.fit.length *= frame.scale;
+      guide.fit.edge_length *= frame.scale;
+    }
     measure_quality(result, plans, parts, whole, context.in_stage("quality", 0.97, 1.0));
   });
   move_outward(frame, soup, result.mesh);

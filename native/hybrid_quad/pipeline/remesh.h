@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hybrid_quad/base/run_context.h"
+#include "hybrid_quad/guide_curves/guide_curves.h"
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/periodic_field/periodic_field.h"
@@ -35,6 +36,7 @@ struct RemeshOptions {
   /// Directions that edges should take: vectors in the coordinates of the input, one for each vertex (or polygon, or both,
   /// where a polygon's own goes first), or none. Zero: free; the length is the strength, 0..1.
   std::vector<Vector3> vertex_guides, face_guides;
+  std::vector<GuideStroke> strokes;  ///< hard guides: lines that are to be chains of edges, or to cross edges in their middles
   /// One for each vertex, or none: 2 asks for edges half as long. 0.1..10, relative unless edge_length > 0.
   std::vector<double> density;
   /// Frames: the two edge vectors of a quad, in usual edge lengths; neither equal nor orthogonal they need to be. Two zero
@@ -105,6 +107,13 @@ struct FieldRecord {
   int relaxed_kept = 0, smoothest_kept = 0;
 };
 
+/// What became of a hard guide.
+struct GuideRecord {
+  GuideKind kind = GuideKind::kLoop;
+  bool is_met = false;
+  GuideFit fit;
+};
+
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
@@ -124,6 +133,7 @@ struct RemeshReport {
   double feature_hausdorff_percent = 0;  ///< 0 without features
   SymmetryRecord symmetry;
   std::vector<CurveCountRecord> curve_counts;  ///< as options.curve_counts
+  std::vector<GuideRecord> guides;       ///< one for each of options.strokes
   std::vector<StageRecord> stages;       ///< summed over components and passes
   std::vector<std::string> warnings;
   std::vector<Defect> defects;           ///< of the input, repaired on the way

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "hybrid_quad/mesh/edge_bisection.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
@@ -30,6 +31,36 @@ double least_quads(const TriangleMesh& mesh) {
   const int loops = boundary_loops(mesh);
   const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
   return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
+}
+
+/// The set of hard guides on the edge of every half-edge, -1: none; empty where there are none at all.
+std::vector<int> guides_on_edges(const TriangleMesh& mesh, const BisectedMesh& fine, const std::vector<int>& guides) {
+  std::map<std::array<int, 2>, int> on_edge;
+  for (std::size_t i = 0; i < fine.marked_edges.size(); ++i)
+    if (fine.source[i] >= 0 && guides[fine.source[i]] >= 0) {
+      const auto& [a, b] = fine.marked_edges[i];
+      on_edge[{a, b}] = on_edge[{b, a}] = guides[fine.source[i]];
+    }
+  if (on_edge.empty()) return {};
+  std::vector<int> found_guides(mesh.halfedge_count(), -1);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const auto found = on_edge.find({mesh.from(h), mesh.to(h)});
+    if (found != on_edge.end()) found_guides[h] = found->second;
+  }
+  return found_guides;
+}
+
+/// Vertices at tight bends of hard guides become corners.
+void add_guide_corners(ComponentPlan& plan, const FeatureOptions& options) {
+  std::vector<char> on_guide(plan.features.curves.size(), 0), is_feature(plan.mesh.halfedge_count());
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
+    is_feature[h] = plan.features.is_feature(h);
+    if (is_feature[h] && plan.guides[h] >= 0) on_guide[plan.features.halfedge_curve[h]] = 1;
+  }
+  std::vector<int> corners = tight_bends(plan.mesh, plan.features, on_guide, plan.length);
+  if (corners.empty()) return;
+  corners.insert(corners.end(), options.corners.begin(), options.corners.end());
+  plan.features = trace_features(plan.mesh, is_feature, options.corner_angle, corners);
 }
 
 /// How much longer edges are made than they were planned.
@@ -91,7 +122,7 @@ Stretch least_stretch(const std::vector<ComponentPlan>& plans, double quads_aske
 
 }  // namespace
 
-ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
+ComponentPlan plan_component(const TriangleMesh& mesh, double length, const MarkedEdges& marked,
                              const std::vector<CountedChain>& chains, const Wishes& wishes,
                              const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
@@ -104,9 +135,10 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
   const double longest = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
   std::vector<EdgeSet> chain_edges;
   for (const CountedChain& chain : chains) chain_edges.push_back(chain.edges);
-  BisectedMesh fine = bisect_long_edges(mesh, longest, marked, chain_edges);
+  BisectedMesh fine = bisect_long_edges(mesh, longest, marked.ends, chain_edges);
   context.checkpoint();
   plan.mesh = std::move(fine.mesh);
+  plan.guides = guides_on_edges(plan.mesh, fine, marked.guides);
   FeatureOptions features = feature_options(options, plan.length);
   features.marked_edges = std::move(fine.marked_edges);
   features.corners = seam_ends(plan.mesh, options.symmetry.planes);
@@ -116,6 +148,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std:
     for (const int v : chain_ends(fine_chains[i])) features.corners.push_back(v);
   }
   plan.features = detect_features(plan.mesh, features, context);
+  if (!plan.guides.empty()) add_guide_corners(plan, features);
   plan.chains = plan_curve_counts(plan.mesh, fine_chains, plan.features);
   plan.curve_planes = seam_planes(plan.mesh, plan.features, options.symmetry.planes);
   const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);

@@ -16,16 +16,23 @@ struct ComponentPlan {
   FeatureGraph features;
   std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
   std::vector<PlannedChain> chains;    ///< as given: what their curves are to get
+  std::vector<int> guides;      ///< 3 #F: the set of hard guides on the edge, -1: none; empty: no guides at all
   double length = 0;            ///< asked edge length at density 1, where nothing limits it (scene units)
   std::vector<double> unlimited;  ///< #V: asked edge length where nothing limits it
   std::vector<double> target;   ///< #V: asked edge length
   double quads = 0;             ///< that fit
 };
 
+/// Edges that are features whatever their angle.
+struct MarkedEdges {
+  std::vector<std::array<int, 2>> ends;  ///< vertices
+  std::vector<int> guides;               ///< of each: the set of hard guides on it, -1: none
+};
+
 /// \param length  edge length asked for; a component too small for it gets a shorter one
-/// \param marked  pairs of the component's vertices that are features
+/// \param marked  edges that are features
 /// \param chains  edges of the component that are to get certain numbers of quads
-ComponentPlan plan_component(const TriangleMesh& mesh, double length, const std::vector<std::array<int, 2>>& marked,
+ComponentPlan plan_component(const TriangleMesh& mesh, double length, const MarkedEdges& marked,
                              const std::vector<CountedChain>& chains, const Wishes& wishes,
                              const RemeshOptions& options, const RunContext& context);
 

@@ -21,19 +21,6 @@ SymmetryRecord settle_symmetry(const SymmetryOptions& options, const TriangleMes
 
 namespace {
 
-/// 3 #F: on a marked edge. A pair of polygon-soup vertices may have become several edges.
-std::vector<char> marked_halfedges(const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked) {
-  std::vector<std::array<int, 2>> sorted;
-  for (const auto& m : marked) sorted.push_back({std::min(m[0], m[1]), std::max(m[0], m[1])});
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<char> is_marked(built.mesh.halfedge_count(), 0);
-  for (int h = 0; h < built.mesh.halfedge_count() && !sorted.empty(); ++h) {
-    const int a = built.input_vertex[built.mesh.from(h)], b = built.input_vertex[built.mesh.to(h)];
-    is_marked[h] = std::binary_search(sorted.begin(), sorted.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)});
-  }
-  return is_marked;
-}
-
 int nearest_source(const PositivePart::Origin& origin) {
   return origin.vertex[std::max_element(origin.weight.begin(), origin.weight.end()) - origin.weight.begin()];
 }
@@ -63,7 +50,19 @@ void take_between(const PositivePart& part, const BuiltMesh& built, std::vector<
 
 }  // namespace
 
-RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, PlaneSet planes) {
+std::vector<char> marked_halfedges(const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked) {
+  std::vector<std::array<int, 2>> sorted;
+  for (const auto& m : marked) sorted.push_back({std::min(m[0], m[1]), std::max(m[0], m[1])});
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<char> is_marked(built.mesh.halfedge_count(), 0);
+  for (int h = 0; h < built.mesh.halfedge_count() && !sorted.empty(); ++h) {
+    const int a = built.input_vertex[built.mesh.from(h)], b = built.input_vertex[built.mesh.to(h)];
+    is_marked[h] = std::binary_search(sorted.begin(), sorted.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)});
+  }
+  return is_marked;
+}
+
+RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, const std::vector<int>& guides, PlaneSet planes) {
   RemeshDomain domain;
   domain.options = options;
   domain.options.symmetry.planes = planes;
@@ -73,6 +72,7 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, Pla
     domain.mesh = built.mesh;
     domain.is_marked = is_marked;
     domain.counted_curve = counted;
+    domain.guides = guides;
     domain.input_vertex = domain.values.input_vertex = built.input_vertex;
     domain.values.input_face = built.input_face;
     return domain;
@@ -85,6 +85,7 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, Pla
   for (const int h : part.halfedge) {
     domain.is_marked.push_back(h >= 0 && is_marked[h]);
     domain.counted_curve.push_back(h >= 0 ? counted[h] : -1);
+    domain.guides.push_back(h >= 0 ? guides[h] : -1);
   }
   for (const int f : part.face) domain.values.input_face.push_back(built.input_face[f]);
   take_nearest(part, built, domain.options.vertex_guides);
@@ -95,13 +96,13 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, Pla
   return domain;
 }
 
-QuadMesh whole_of(const ComponentResult& component, const ComponentPlan& plan, const TriangleMesh& mesh,
+QuadMesh whole_of(const ComponentResult& component, const TriangleMesh& mesh,
                   const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options) {
   if (options.symmetry.planes == 0) return component.mesh;
   const double sharp_angle = options.use_sharp_angle ? options.sharp_angle : 360;
   const std::vector<char> creases =
-      seam_creases(component.mesh, plan.curve_planes, mesh, options.symmetry.planes, sharp_angle, marked);
-  return mirror_quads(component.mesh, plan.curve_planes, options.symmetry.planes, creases);
+      seam_creases(component.mesh, component.curve_planes, mesh, options.symmetry.planes, sharp_angle, marked);
+  return mirror_quads(component.mesh, component.curve_planes, options.symmetry.planes, creases);
 }
 
 std::vector<std::string> symmetry_warnings(const RemeshDomain& domain, const TriangleMesh& input, const QuadMesh& result) {

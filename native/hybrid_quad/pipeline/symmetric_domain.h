@@ -16,6 +16,7 @@ struct RemeshDomain {
   std::vector<int> input_vertex;  ///< #V: polygon-soup vertex, -1 for one that a mirror plane made
   std::vector<char> is_marked;    ///< 3 #F: on an edge marked as a feature
   std::vector<int> counted_curve; ///< 3 #F: on this one of options.curve_counts, or -1
+  std::vector<int> guides;        ///< 3 #F: the set of hard guides on the edge, -1: none
   RemeshOptions options;          ///< with the planes that are used
   BuiltMesh values;               ///< no mesh: where in the arrays of `options` the values of a vertex and a face are
   int faces_in_plane = 0;         ///< left out
@@ -23,11 +24,15 @@ struct RemeshDomain {
 
 /// Vertices that a plane made get values between those of their edge's ends; directions, which have no middle, those of the
 /// nearer one.
-RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, PlaneSet planes);
+/// \param guides  3 #F of built.mesh: as in RemeshDomain
+RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, const std::vector<int>& guides, PlaneSet planes);
+
+/// 3 #F: on a marked edge. A pair of polygon-soup vertices may have become several edges.
+std::vector<char> marked_halfedges(const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked);
 
 /// The component's quads with their mirror images; unchanged where no planes are used.
 /// \param mesh  of the component  \param marked  pairs of its vertices that are features
-QuadMesh whole_of(const ComponentResult& component, const ComponentPlan& plan, const TriangleMesh& mesh,
+QuadMesh whole_of(const ComponentResult& component, const TriangleMesh& mesh,
                   const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options);
 
 /// Number of mirror images that make up the whole.

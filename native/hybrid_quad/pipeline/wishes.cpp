@@ -133,6 +133,12 @@ void check_wishes(const PolygonSoup& soup, const RemeshOptions& options) {
   check_values(options.face_frames, faces, "frame", "face");
   check_frames(options.vertex_frames, "vertex");
   check_frames(options.face_frames, "face");
+  std::vector<int> bad;
+  for (std::size_t i = 0; i < options.strokes.size(); ++i)
+    for (const Vector3& p : options.strokes[i].points)
+      if (!is_finite(p) && (bad.empty() || bad.back() != static_cast<int>(i))) bad.push_back(static_cast<int>(i));
+  if (!bad.empty())
+    throw InputError("non_finite_stroke", "guide " + std::to_string(bad.front()) + " has points that are not finite", "guide", bad);
 }
 
 Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
