@@ -6,7 +6,7 @@
 #include <random>
 
 #include "hybrid_quad/improve/improve.h"
-#include "hybrid_quad/improve/surface_walk.h"
+#include "hybrid_quad/mesh/surface_walk.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/workpiece.h"
 #include "hybrid_quad/quality/quality.h"

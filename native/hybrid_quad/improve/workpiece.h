@@ -5,7 +5,7 @@
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/improve/curve_geometry.h"
 #include "hybrid_quad/improve/edit_mesh.h"
-#include "hybrid_quad/improve/surface_walk.h"
+#include "hybrid_quad/mesh/surface_walk.h"
 #include "hybrid_quad/mesh/surface_index.h"
 
 namespace hybrid_quad {

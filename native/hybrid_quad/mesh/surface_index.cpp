@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "hybrid_quad/mesh/surface_walk.h"
+
 namespace hybrid_quad {
 
 Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -223,27 +225,7 @@ bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std
 }
 
 SurfacePoint SurfaceIndex::walk(const Vector3& p, int start) const {
-  const Tree& tree = *tree_;
-  SurfacePoint best;
-  best.squared_distance = std::numeric_limits<double>::infinity();
-  tree.take(p, start, best);
-  if (best.face < 0) best = {start, tree.nearest_on_face(p, start), best.squared_distance};  // p is not finite
-  for (bool moved = true; moved;) {
-    moved = false;
-    // Neighbours about the corners too: at a vertex the nearest point of the next faces ties across edges.
-    const int f = best.face;
-    for (int i = 0; i < 3; ++i) {
-      const int first = 3 * f + i;
-      int h = first, steps = 0;
-      do {
-        h = tree.mesh.rotate_ccw(h);
-        if (h < 0 || h == first) break;
-        const int g = h / 3;
-        if (tree.region.empty() || tree.region[g] == tree.region[start]) moved |= tree.take(p, g, best);
-      } while (++steps < 64);
-    }
-  }
-  return best;
+  return walk_to_nearest(tree_->mesh, tree_->region, p, start);
 }
 
 }  // namespace hybrid_quad

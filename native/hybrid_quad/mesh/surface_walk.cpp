@@ -1,4 +1,4 @@
-#include "hybrid_quad/improve/surface_walk.h"
+#include "hybrid_quad/mesh/surface_walk.h"
 
 namespace hybrid_quad {
 
