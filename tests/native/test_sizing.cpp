@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCore>
 #include <cmath>
 
-#include "hybrid_quad/numerics/sparse_solve.h"
 #include "hybrid_quad/sizing/curl_correction.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"
@@ -130,25 +128,6 @@ TEST(Sizing, VaryingTargetLengthsAreFollowed) {
   const SizedFrames result = sized(surface, solved(surface), 0, true, false);
   EXPECT_TRUE(violations_of(result.field, surface).empty());
   EXPECT_NEAR(area_in_quads(surface.mesh, result.field), asked, 1e-6 * asked);
-}
-
-TEST(SparseSolve, SolvesAndSurvivesSingularSystems) {
-  const int n = 50;  // a path's Laplacian: singular, but the right side has no share of its kernel
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i + 1 < n; ++i) {
-    entries.emplace_back(i, i, 1);
-    entries.emplace_back(i + 1, i + 1, 1);
-    entries.emplace_back(i + 1, i, -1);
-  }
-  SparseMatrix lower(n, n);
-  lower.setFromTriplets(entries.begin(), entries.end());
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
-  b[0] = 1;
-  b[n - 1] = -1;
-  const Eigen::VectorXd x = solve_sparse(lower, b, RunContext{});
-  EXPECT_LT((lower.selfadjointView<Eigen::Lower>() * x - b).norm(), 1e-6);
-  const SparseMatrix nothing(n, n);
-  EXPECT_TRUE(solve_sparse(nothing, b, RunContext{}).allFinite());
 }
 
 }  // namespace

@@ -186,8 +186,13 @@ class ComponentRemesher {
     return extract(unit, asked, Attempt::kPatchesOnly);
   }
 
-  Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
-    const SizedFrames sized = clock_.measure("sizing", [&] {
+  /// Frames for a number of quads. Where that only scales them, they are solved for once.
+  FrameField sized_frames(const FrameField& unit, double asked) {
+    return clock_.measure("sizing", [&] {
+      if (!sized_.du.empty() && quads_only_scale(surface_)) {
+        scale_to_quads(surface_.mesh, asked, sized_);
+        return sized_;
+      }
       SizingOptions o;
       constexpr double kWhereAsked = 100;  // sizes that someone asked for count more than even ones
       const bool asked_sizes = !wishes_.density.empty() || !wishes_.corner_frames.empty();
@@ -195,14 +200,19 @@ class ComponentRemesher {
       o.curl_weight = std::max(settings_.curl_weight, fidelity);
       o.direction_weight = direction_weight_;
       o.stretch = stretch_;
-      return apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4));
+      sized_ = apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4)).field;
+      return sized_;
     });
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(sized.field, surface_, "sizing"));
+  }
+
+  Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
+    const FrameField frames = sized_frames(unit, asked);
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(frames, surface_, "sizing"));
     const PeriodicField psi = clock_.measure("periodic field", [&] {
       PeriodicFieldOptions o;
       o.solver = options_.solver;
       o.strip_rows = options_.narrow_quads;
-      return solve_periodic_field(surface_, sized.field, o, context_.in_stage("periodic field", 0.4, 0.55));
+      return solve_periodic_field(surface_, frames, o, context_.in_stage("periodic field", 0.4, 0.55));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(psi, surface_));
     Extraction out;
@@ -210,15 +220,15 @@ class ComponentRemesher {
       SpanningOptions o;
       o.strip_rows = options_.narrow_quads;
       o.cancel_dislocations = attempt == Attempt::kFull;
-      return build_spanning_parameterization(surface_, sized.field, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
+      return build_spanning_parameterization(surface_, frames, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
     });
     if (attempt == Attempt::kPatchesOnly) std::fill(out.param.is_regular.begin(), out.param.is_regular.end(), 0);
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.param, surface_));
     RegularQuads regular = clock_.measure("regular quads", [&] {
-      return extract_regular_quads(surface_, sized.field, out.param, context_.in_stage("regular quads", 0.7, 0.76));
+      return extract_regular_quads(surface_, frames, out.param, context_.in_stage("regular quads", 0.7, 0.76));
     });
     SingularPatches singular = clock_.measure("singular patches", [&] {
-      return fill_singular_patches(surface_, sized.field, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
+      return fill_singular_patches(surface_, frames, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
     });
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(regular, singular));
     out.mesh = clock_.measure("assemble", [&] {
@@ -328,6 +338,7 @@ class ComponentRemesher {
   const RunContext& context_;
   double length_ = 0;
   WorkingSurface surface_;
+  FrameField sized_;  ///< of the latest try
   std::vector<double> direction_weight_;  ///< see SizingOptions
   std::vector<Eigen::Matrix3d> stretch_;
   ComponentResult result_;

@@ -32,7 +32,7 @@ std::vector<double> conformal_length_factor(const WorkingSurface& surface, const
   for (int v = 0; v < n; ++v) entries.emplace_back(v, v, diagonal[v]);
   SparseMatrix matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd log_length = solve_sparse(matrix, right_side, context);
+  const Eigen::VectorXd log_length = solve_sparse(matrix, right_side, mesh.positions(), context);
 
   std::vector<double> factor(mesh.face_count());
   double mean = 0, total = 0;

@@ -21,17 +21,21 @@ struct RowConstraints {
   std::vector<std::array<RowTerm, 6>> terms;  ///< per node: at most an edge and a feature on each of three sides
   std::vector<int> term_count;
   std::vector<double> compliance;
+  std::vector<Vector3> place;      ///< per constraint: the middle of its edge
   std::vector<Vector2> stiffness;  ///< per node: what X - I costs, without lambda
   std::vector<Vector2> feature;    ///< per node: the feature edge whose row this has to vanish on, or zero
 
-  int add(double softness) {
+  int add(double softness, const Vector3& middle) {
     compliance.push_back(softness);
+    place.push_back(middle);
     return static_cast<int>(compliance.size()) - 1;
   }
   void put(int node, int constraint, const Vector2& coefficients) {
     terms[node][term_count[node]++] = {constraint, coefficients};
   }
 };
+
+Vector3 middle_of(const TriangleMesh& mesh, int h) { return 0.5 * (mesh.position(mesh.from(h)) + mesh.position(mesh.to(h))); }
 
 /// Both rows must agree across the edge: X_f d_f + turned(X_g d_g) = 0.
 void add_edge(const FrameField& field, const TriangleMesh& mesh, int h, double relative_area, RowConstraints& constraints) {
@@ -43,7 +47,7 @@ void add_edge(const FrameField& field, const TriangleMesh& mesh, int h, double r
     const Vector2 from_u = turned(Vector2(1, 0), field.matching[o]), from_v = turned(Vector2(0, 1), field.matching[o]);
     const int source = std::abs(from_u[row]) > 0.5 ? 0 : 1;
     const double sign = source == 0 ? from_u[row] : from_v[row];
-    const int constraint = constraints.add(softness);
+    const int constraint = constraints.add(softness, middle_of(mesh, h));
     constraints.put(2 * f + row, constraint, here);
     constraints.put(2 * g + source, constraint, sign * there);
   }
@@ -66,7 +70,8 @@ void add_features(const FrameField& field, const WorkingSurface& surface, int f,
   for (int row = 0; row < 2; ++row) {
     if (chosen[row] < 0) continue;
     const Vector2 d = field.grid_vector(surface.mesh, chosen[row]);
-    constraints.put(2 * f + row, constraints.add(std::max(d.squaredNorm(), 1e-12) / (weight * weight)), d);
+    const double softness = std::max(d.squaredNorm(), 1e-12) / (weight * weight);
+    constraints.put(2 * f + row, constraints.add(softness, middle_of(surface.mesh, chosen[row])), d);
     constraints.feature[2 * f + row] = d;
   }
 }
@@ -127,7 +132,7 @@ void solve_rows(const RowConstraints& constraints, double lambda, std::vector<st
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
   assemble_dual(constraints, lambda, matrix, right_side);
-  const Eigen::VectorXd multiplier = solve_sparse(matrix, right_side, context);
+  const Eigen::VectorXd multiplier = solve_sparse(matrix, right_side, constraints.place, context);
   for (std::size_t node = 0; node < constraints.terms.size(); ++node) {
     Vector2 push = Vector2::Zero();
     for (int a = 0; a < constraints.term_count[node]; ++a)

@@ -68,16 +68,6 @@ double area_in_quads(const TriangleMesh& mesh, const FrameField& field) {
   return sum;
 }
 
-/// Makes the area in quads what was asked.
-void scale_to_quads(const TriangleMesh& mesh, double quads, FrameField& field) {
-  const double scale = std::sqrt(quads / area_in_quads(mesh, field));
-  if (!std::isfinite(scale) || !(scale > 0)) return;
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    field.du[f] *= scale;
-    field.dv[f] *= scale;
-  }
-}
-
 double asked_quads(const WorkingSurface& surface) {
   double sum = 0;
   for (int f = 0; f < surface.mesh.face_count(); ++f)
@@ -115,6 +105,17 @@ SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_f
   counts.apply(sized.field, context);
   context.checkpoint(1);
   return sized;
+}
+
+bool quads_only_scale(const WorkingSurface& surface) { return CurveCountScale(surface).is_idle(); }
+
+void scale_to_quads(const TriangleMesh& mesh, double quads, FrameField& field) {
+  const double scale = std::sqrt(quads / area_in_quads(mesh, field));
+  if (!std::isfinite(scale) || !(scale > 0)) return;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    field.du[f] *= scale;
+    field.dv[f] *= scale;
+  }
 }
 
 }  // namespace hybrid_quad

@@ -29,4 +29,9 @@ struct SizedFrames {
 SizedFrames apply_sizing(const WorkingSurface& surface, const FrameField& unit_frames, double quads_asked,
                          const SizingOptions& options, const RunContext& context);
 
+/// Whether apply_sizing for another number of quads gives the same frames, scaled: curves with an asked count prevent that.
+bool quads_only_scale(const WorkingSurface& surface);
+/// Scales frames so that the area measured in quads is what is asked; as it is where that cannot be.
+void scale_to_quads(const TriangleMesh& mesh, double quads, FrameField& field);
+
 }  // namespace hybrid_quad

@@ -1,11 +1,10 @@
 #include "hybrid_quad/spanning_parameterization/grid_poisson.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "hybrid_quad/base/interruptible.h"
+#include "hybrid_quad/numerics/multifrontal_cholesky.h"
 #include "hybrid_quad/periodic_field/phase_graph.h"
 
 namespace hybrid_quad {
@@ -51,10 +50,8 @@ class SlipProblem {
     assemble(stiffness, grid);
     context.checkpoint(0.6);
     if (!factored_) {
-      const auto factor = factor_;
-      const auto lower = std::make_shared<const Eigen::SparseMatrix<double>>(lower_);
-      run_interruptibly(context, 0.5, [=] { factor->compute(*lower); });
-      if (factor_->info() != Eigen::Success) return;
+      factor_ = std::make_unique<MultifrontalCholesky>(lower_, places(), context);
+      if (!factor_->factorize(lower_, 0, context)) return;
       factored_ = true;
     }
     context.checkpoint(0.7);
@@ -70,6 +67,14 @@ class SlipProblem {
     return constraint == GridConstraint::kFree ||
            (constraint == GridConstraint::kIsolineV && coordinate == 0) ||
            (constraint == GridConstraint::kIsolineU && coordinate == 1);
+  }
+
+  std::vector<Vector3> places() const {
+    std::vector<Vector3> places(count_);
+    for (int v = 0; v < mesh_.vertex_count(); ++v)
+      for (const int i : unknown_[v])
+        if (i >= 0) places[i] = mesh_.position(v);
+    return places;
   }
 
   void assemble(const std::vector<double>& stiffness, const LiftedGrid& grid) {
@@ -148,10 +153,9 @@ class SlipProblem {
   int count_ = 0;
   std::vector<double> half_weight_;
   std::vector<Eigen::Triplet<double>> entries_;
-  Eigen::SparseMatrix<double> lower_;
+  SparseMatrix lower_;
   Eigen::VectorXd right_side_;
-  using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
-  std::shared_ptr<Factor> factor_ = std::make_shared<Factor>();
+  std::unique_ptr<MultifrontalCholesky> factor_;
   bool factored_ = false;
 };
 

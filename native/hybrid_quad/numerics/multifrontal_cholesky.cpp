@@ -1,0 +1,139 @@
+#include "hybrid_quad/numerics/multifrontal_cholesky.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <utility>
+
+namespace hybrid_quad {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MultifrontalCholesky::MultifrontalCholesky(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context) {
+  EliminationForest forest = nested_dissection(lower, places, context);
+  place_.resize(forest.order.size());
+  for (std::size_t k = 0; k < forest.order.size(); ++k) place_[forest.order[k]] = static_cast<int>(k);
+  fronts_.resize(forest.parts.size());
+  for (std::size_t p = 0; p < fronts_.size(); ++p) {
+    fronts_[p].begin = forest.parts[p].begin;
+    fronts_[p].end = forest.parts[p].end;
+    fronts_[p].children = std::move(forest.parts[p].children);
+  }
+  place_entries(lower);
+  find_couplings();
+}
+
+void MultifrontalCholesky::place_entries(const SparseMatrix& lower) {
+  const int n = static_cast<int>(lower.rows());
+  const auto visit = [&](const auto& use) {
+    for (int c = 0, entry = 0; c < n; ++c)
+      for (SparseMatrix::InnerIterator it(lower, c); it; ++it, ++entry) {
+        const int i = place_[it.row()], j = place_[c];
+        use(std::min(i, j), std::max(i, j), entry);
+      }
+  };
+  first_.assign(n + 1, 0);
+  visit([&](int column, int, int) { ++first_[column + 1]; });
+  for (int c = 0; c < n; ++c) first_[c + 1] += first_[c];
+  row_.resize(first_[n]);
+  entry_.resize(first_[n]);
+  std::vector<int> end(first_.begin(), first_.end() - 1);
+  visit([&](int column, int row, int entry) {
+    row_[end[column]] = row;
+    entry_[end[column]++] = entry;
+  });
+}
+
+void MultifrontalCholesky::find_couplings() {
+  local_.assign(place_.size(), -1);
+  for (std::size_t p = 0; p < fronts_.size(); ++p) {
+    Front& front = fronts_[p];
+    const auto add = [&](int k) {
+      if (k < front.end || local_[k] == static_cast<int>(p)) return;
+      local_[k] = static_cast<int>(p);
+      front.beyond.push_back(k);
+    };
+    for (int k = first_[front.begin]; k < first_[front.end]; ++k) add(row_[k]);
+    for (const int child : front.children)
+      for (const int k : fronts_[child].beyond) add(k);
+    std::sort(front.beyond.begin(), front.beyond.end());
+  }
+}
+
+bool MultifrontalCholesky::factorize(const SparseMatrix& lower, double shift, const RunContext& context) {
+  constexpr std::size_t kCheckEvery = 64;
+  constexpr int kLarge = 200;
+  value_.resize(entry_.size());
+  for (std::size_t k = 0; k < entry_.size(); ++k) value_[k] = lower.valuePtr()[entry_[k]];
+  std::vector<MatrixXd> left_over(fronts_.size());
+  for (std::size_t p = 0; p < fronts_.size(); ++p) {
+    if (p % kCheckEvery == 0 || fronts_[p].own() > kLarge)
+      context.checkpoint(static_cast<double>(p) / static_cast<double>(fronts_.size()));
+    if (!eliminate(p, shift, left_over)) return false;
+  }
+  return true;
+}
+
+/// \param left_over  what every front leaves to its parent, lower triangles; what its children left is used up
+bool MultifrontalCholesky::eliminate(std::size_t which, double shift, std::vector<MatrixXd>& left_over) {
+  Front& front = fronts_[which];
+  MatrixXd& rest = left_over[which];
+  const int own = front.own(), beyond = static_cast<int>(front.beyond.size());
+  front.column.setZero(own + beyond, own);
+  rest.setZero(beyond, beyond);
+  for (int i = 0; i < beyond; ++i) local_[front.beyond[i]] = own + i;
+  const auto local = [&](int place) { return place < front.end ? place - front.begin : local_[place]; };
+  for (int c = front.begin; c < front.end; ++c) {
+    front.column(c - front.begin, c - front.begin) += shift;
+    for (int k = first_[c]; k < first_[c + 1]; ++k) front.column(local(row_[k]), c - front.begin) += value_[k];
+  }
+  std::vector<int> to;
+  for (const int child : front.children) {
+    MatrixXd& given = left_over[child];
+    to.clear();
+    for (const int k : fronts_[child].beyond) to.push_back(local(k));
+    for (int j = 0; j < given.cols(); ++j)
+      for (int i = j; i < given.rows(); ++i)
+        (to[j] < own ? front.column(to[i], to[j]) : rest(to[i] - own, to[j] - own)) += given(i, j);
+    given.resize(0, 0);
+  }
+  Eigen::Ref<MatrixXd> pivot = front.column.topRows(own);
+  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(pivot);
+  if (factor.info() != Eigen::Success) return false;
+  if (beyond == 0) return true;
+  auto below = front.column.bottomRows(beyond);
+  pivot.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+  rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  return true;
+}
+
+VectorXd MultifrontalCholesky::solve(const VectorXd& right_side) const {
+  VectorXd x(right_side.size()), beyond;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[place_[i]] = right_side[i];
+  for (const Front& front : fronts_) {
+    const Eigen::Index own = front.own(), more = static_cast<Eigen::Index>(front.beyond.size());
+    beyond.setZero(more);
+    for (Eigen::Index j = 0; j < own; ++j) {
+      const auto column = front.column.col(j);
+      const double value = x[front.begin + j] /= column[j];
+      x.segment(front.begin + j + 1, own - j - 1) -= value * column.segment(j + 1, own - j - 1);
+      beyond += value * column.tail(more);
+    }
+    for (Eigen::Index i = 0; i < more; ++i) x[front.beyond[i]] -= beyond[i];
+  }
+  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
+    const Eigen::Index own = front->own(), more = static_cast<Eigen::Index>(front->beyond.size());
+    beyond.resize(more);
+    for (Eigen::Index i = 0; i < more; ++i) beyond[i] = x[front->beyond[i]];
+    for (Eigen::Index j = own - 1; j >= 0; --j) {
+      const auto column = front->column.col(j);
+      const double known = column.segment(j + 1, own - j - 1).dot(x.segment(front->begin + j + 1, own - j - 1));
+      x[front->begin + j] = (x[front->begin + j] - known - column.tail(more).dot(beyond)) / column[j];
+    }
+  }
+  VectorXd result(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) result[i] = x[place_[i]];
+  return result;
+}
+
+}  // namespace hybrid_quad

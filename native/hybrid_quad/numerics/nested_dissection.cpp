@@ -1,0 +1,144 @@
+#include "hybrid_quad/numerics/nested_dissection.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr int kLeaf = 12;  ///< as many unknowns are eliminated at once whatever couples them
+
+class Dissection {
+ public:
+  Dissection(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context)
+      : places_(places), context_(context), first_(lower.rows() + 1, 0), set_(lower.rows(), 0) {
+    visit_couplings(lower, [this](int i, int j) {
+      ++first_[i + 1];
+      ++first_[j + 1];
+    });
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    neighbour_.resize(first_.back());
+    std::vector<int> end(first_.begin(), first_.end() - 1);
+    visit_couplings(lower, [&](int i, int j) {
+      neighbour_[end[i]++] = j;
+      neighbour_[end[j]++] = i;
+    });
+  }
+
+  EliminationForest run() {
+    std::vector<int> all(places_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    dissect_pieces(std::move(all));
+    return std::move(forest_);
+  }
+
+ private:
+  template <class Visit>
+  static void visit_couplings(const SparseMatrix& lower, const Visit& visit) {
+    for (int c = 0; c < lower.outerSize(); ++c)
+      for (SparseMatrix::InnerIterator it(lower, c); it; ++it)
+        if (it.row() > c) visit(static_cast<int>(it.row()), c);
+  }
+
+  /// Gives the unknowns a mark of their own.
+  int mark(const std::vector<int>& unknowns) {
+    ++marks_;
+    for (const int i : unknowns) set_[i] = marks_;
+    return marks_;
+  }
+
+  int add_part(const std::vector<int>& own, std::vector<int> children) {
+    EliminationForest::Part part;
+    part.begin = static_cast<int>(forest_.order.size());
+    forest_.order.insert(forest_.order.end(), own.begin(), own.end());
+    part.end = static_cast<int>(forest_.order.size());
+    part.children = std::move(children);
+    forest_.parts.push_back(std::move(part));
+    return static_cast<int>(forest_.parts.size()) - 1;
+  }
+
+  /// \return the parts on top, one for every connected piece
+  std::vector<int> dissect_pieces(std::vector<int> unknowns) {
+    std::vector<int> tops;
+    if (static_cast<int>(unknowns.size()) <= kLeaf) {
+      if (!unknowns.empty()) tops.push_back(add_part(unknowns, {}));
+      return tops;
+    }
+    const int within = mark(unknowns);
+    std::vector<std::vector<int>> pieces;
+    for (const int seed : unknowns) {
+      if (set_[seed] != within) continue;
+      std::vector<int> piece{seed};
+      set_[seed] = 0;
+      for (std::size_t k = 0; k < piece.size(); ++k)
+        for (int e = first_[piece[k]]; e < first_[piece[k] + 1]; ++e) {
+          const int j = neighbour_[e];
+          if (set_[j] != within) continue;
+          set_[j] = 0;
+          piece.push_back(j);
+        }
+      pieces.push_back(std::move(piece));
+    }
+    unknowns = {};
+    for (std::vector<int>& piece : pieces) tops.push_back(dissect_connected(std::move(piece)));
+    return tops;
+  }
+
+  int dissect_connected(std::vector<int> piece) {
+    constexpr std::size_t kLarge = 10000;
+    if (static_cast<int>(piece.size()) <= kLeaf) return add_part(piece, {});
+    if (piece.size() > kLarge) context_.checkpoint();
+    auto [low, high] = halves(std::move(piece));
+    // Whichever side has fewer unknowns at the cut gives them away.
+    const int low_mark = mark(low), high_mark = mark(high);
+    std::vector<int> low_cut = coupled_with(low, high_mark), high_cut = coupled_with(high, low_mark);
+    const bool from_low = low_cut.size() < high_cut.size();
+    const std::vector<int>& cut = from_low ? low_cut : high_cut;
+    std::vector<int>& side = from_low ? low : high;
+    const int cut_mark = mark(cut);
+    side.erase(std::remove_if(side.begin(), side.end(), [&](int i) { return set_[i] == cut_mark; }), side.end());
+    std::vector<int> children = dissect_pieces(std::move(low));
+    const std::vector<int> others = dissect_pieces(std::move(high));
+    children.insert(children.end(), others.begin(), others.end());
+    return add_part(cut, std::move(children));
+  }
+
+  std::pair<std::vector<int>, std::vector<int>> halves(std::vector<int> piece) const {
+    Vector3 least = places_[piece[0]], most = least;
+    for (const int i : piece) {
+      least = least.cwiseMin(places_[i]);
+      most = most.cwiseMax(places_[i]);
+    }
+    int axis = 0;
+    (most - least).maxCoeff(&axis);
+    const auto middle = piece.begin() + static_cast<std::ptrdiff_t>(piece.size() / 2);
+    std::nth_element(piece.begin(), middle, piece.end(), [&](int i, int j) {
+      return places_[i][axis] != places_[j][axis] ? places_[i][axis] < places_[j][axis] : i < j;
+    });
+    return {std::vector<int>(piece.begin(), middle), std::vector<int>(middle, piece.end())};
+  }
+
+  std::vector<int> coupled_with(const std::vector<int>& side, int other) const {
+    std::vector<int> cut;
+    for (const int i : side)
+      if (std::any_of(neighbour_.begin() + first_[i], neighbour_.begin() + first_[i + 1], [&](int j) { return set_[j] == other; }))
+        cut.push_back(i);
+    return cut;
+  }
+
+  const std::vector<Vector3>& places_;
+  const RunContext& context_;
+  std::vector<int> first_, neighbour_;
+  std::vector<int> set_;  ///< the latest mark that an unknown got
+  int marks_ = 0;
+  EliminationForest forest_;
+};
+
+}  // namespace
+
+EliminationForest nested_dissection(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context) {
+  return Dissection(lower, places, context).run();
+}
+
+}  // namespace hybrid_quad
