@@ -89,8 +89,7 @@ class ComponentRemesher {
     result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
     const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
-    const SurfaceIndex index(mesh_, {});
-    for (const int q : doubtful) result_.limits.push_back(shorter_at(index, q));
+    for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);
   }
 
@@ -98,7 +97,7 @@ class ComponentRemesher {
   void prepare() {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
     surface_ = clock_.measure("working surface", [&] {
-      return build_working_surface(mesh_, plan_.features, plan_.target, working_surface_options(wishes_),
+      return build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_),
                                    context_.in_stage("working surface", 0, 0.2));
     });
     result_.working_faces = surface_.mesh.face_count();
@@ -127,7 +126,7 @@ class ComponentRemesher {
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
     const int tries = plan_.quads < kFew ? kTriesOfFew : kTriesOfMany;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
-    const SurfaceIndex index(mesh_, plan_.features.face_region);
+    const SurfaceIndex& index = *plan_.index;
     // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
     constexpr double kLeastBesideCounts = 0.6;
     const auto& curves = plan_.features.curves;

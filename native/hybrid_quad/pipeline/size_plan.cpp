@@ -157,7 +157,8 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   FeatureSizeOptions feature_size;
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
   if (plan.length < kTiny * length) feature_size.least_ratio = kTinyRatio;
-  plan.target = asked_lengths(SurfaceIndex(plan.mesh, {}), plan.features, plan.length, density, feature_size, context);
+  plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region);
+  plan.target = asked_lengths(*plan.index, plan.features, plan.length, density, feature_size, context);
   shorten_for_counts(plan);
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
   return plan;
@@ -179,7 +180,7 @@ ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, const
   for (double& t : finer.target) t *= factor;
   if (!limits.empty()) {
     const double longest = *std::max_element(finer.target.begin(), finer.target.end());
-    limit_lengths(SurfaceIndex(finer.mesh, {}), limits, finer.target);
+    limit_lengths(*finer.index, limits, finer.target);
     grade_lengths(finer.mesh, longest, finer.target);
   }
   finer.quads = quads_for_lengths(finer.mesh, finer.target);

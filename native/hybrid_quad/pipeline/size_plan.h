@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "hybrid_quad/features/curve_counts.h"
+#include "hybrid_quad/features/features.h"
+#include "hybrid_quad/mesh/surface_index.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/wishes.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -13,6 +16,7 @@ namespace hybrid_quad {
 /// A connected component, its feature curves, and how long its quads' edges are to be.
 struct ComponentPlan {
   TriangleMesh mesh;            ///< the component with long edges halved: the same surface, old vertices first
+  std::shared_ptr<const SurfaceIndex> index;  ///< of that mesh, with the features' regions
   FeatureGraph features;
   std::vector<PlaneSet> curve_planes;  ///< #curves: mirror planes in which each lies
   std::vector<PlannedChain> chains;    ///< as given: what their curves are to get

@@ -15,15 +15,16 @@ constexpr int kFinalRounds = 3;
 
 }  // namespace
 
-SurfaceRemesher::SurfaceRemesher(const TriangleMesh& input, const FeatureGraph& features,
+SurfaceRemesher::SurfaceRemesher(const SurfaceIndex& index, const FeatureGraph& features,
                                  const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
                                  const RunContext& context)
     : context_(context),
       options_(options),
       input_region_(features.face_region),
-      index_(input, features.face_region),
-      mesh_(input, features.halfedge_curve, features.face_region),
-      vertex_(input.vertex_count()) {
+      index_(index),
+      mesh_(index.mesh(), features.halfedge_curve, features.face_region),
+      vertex_(index.mesh().vertex_count()) {
+  const TriangleMesh& input = index.mesh();
   for (int v = 0; v < input.vertex_count(); ++v) {
     VertexData& d = vertex_[v];
     d.target = target_length[v];

@@ -12,7 +12,7 @@ namespace hybrid_quad {
 /// them, corners stay where they are.
 class SurfaceRemesher {
  public:
-  SurfaceRemesher(const TriangleMesh& input, const FeatureGraph& features, const std::vector<double>& target_length,
+  SurfaceRemesher(const SurfaceIndex& index, const FeatureGraph& features, const std::vector<double>& target_length,
                   const WorkingSurfaceOptions& options, const RunContext& context);
 
   void run();
@@ -65,7 +65,7 @@ class SurfaceRemesher {
   const RunContext& context_;
   WorkingSurfaceOptions options_;
   const std::vector<int>& input_region_;
-  SurfaceIndex index_;
+  const SurfaceIndex& index_;
   EditableMesh mesh_;
   std::vector<VertexData> vertex_;
   std::vector<int> curve_edges_, curve_originals_;  ///< edges of each curve; input vertices left inside it

@@ -13,12 +13,19 @@ namespace hybrid_quad {
 WorkingSurface build_working_surface(const TriangleMesh& input, const FeatureGraph& features,
                                      const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
                                      const RunContext& context) {
+  return build_working_surface(SurfaceIndex(input, features.face_region), features, target_length, options, context);
+}
+
+WorkingSurface build_working_surface(const SurfaceIndex& index, const FeatureGraph& features,
+                                     const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
+                                     const RunContext& context) {
+  const TriangleMesh& input = index.mesh();
   if (static_cast<int>(target_length.size()) != input.vertex_count())
     throw InternalError("working_surface", "one target length a vertex is needed");
   for (int v = 0; v < input.vertex_count(); ++v)
     if (input.outgoing(v) >= 0 && !(target_length[v] > 0))
       throw InternalError("working_surface", "target lengths must be positive");
-  SurfaceRemesher remesher(input, features, target_length, options, context);
+  SurfaceRemesher remesher(index, features, target_length, options, context);
   remesher.run();
 
   EditableMesh::Compacted compacted = remesher.mesh().compacted();

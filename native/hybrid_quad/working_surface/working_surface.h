@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/mesh/surface_index.h"
 
 namespace hybrid_quad {
 
@@ -24,6 +25,10 @@ struct WorkingSurfaceOptions {
 /// topology kept by the link condition. No inner edge joins two feature vertices afterwards (paper 3.2).
 /// \param target_length  #V of the input: h at each vertex (scene units, > 0)
 /// \post  same topology, same feature curves, no face without area
+/// \param index  of the input, with the features' regions
+WorkingSurface build_working_surface(const SurfaceIndex& index, const FeatureGraph& features,
+                                     const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
+                                     const RunContext& context);
 WorkingSurface build_working_surface(const TriangleMesh& input, const FeatureGraph& features,
                                      const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
                                      const RunContext& context);
