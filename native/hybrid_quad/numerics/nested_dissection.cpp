@@ -34,6 +34,10 @@ class Dissection {
   }
 
  private:
+  struct Separation {
+    std::vector<int> low, high, cut;
+  };
+
   template <class Visit>
   static void visit_couplings(const SparseMatrix& lower, const Visit& visit) {
     for (int c = 0; c < lower.outerSize(); ++c)
@@ -71,13 +75,7 @@ class Dissection {
       if (set_[seed] != within) continue;
       std::vector<int> piece{seed};
       set_[seed] = 0;
-      for (std::size_t k = 0; k < piece.size(); ++k)
-        for (int e = first_[piece[k]]; e < first_[piece[k] + 1]; ++e) {
-          const int j = neighbour_[e];
-          if (set_[j] != within) continue;
-          set_[j] = 0;
-          piece.push_back(j);
-        }
+      append_reachable(within, piece);
       pieces.push_back(std::move(piece));
     }
     unknowns = {};
@@ -86,25 +84,47 @@ class Dissection {
   }
 
   int dissect_connected(std::vector<int> piece) {
-    constexpr std::size_t kLarge = 10000;
+    constexpr std::size_t kLarge = 10000, kWideCut = 3;
     if (static_cast<int>(piece.size()) <= kLeaf) return add_part(piece, {});
     if (piece.size() > kLarge) context_.checkpoint();
-    auto [low, high] = halves(std::move(piece));
+    Separation parted = halved_by_plane(piece);
+    // A disk of n unknowns is cut through by about the root of n.
+    if (parted.cut.size() * parted.cut.size() > kWideCut * piece.size()) {
+      Separation other = halved_by_distance(piece);
+      if (other.cut.size() < parted.cut.size()) parted = std::move(other);
+    }
+    piece = {};
+    std::vector<int> children = dissect_pieces(std::move(parted.low));
+    const std::vector<int> others = dissect_pieces(std::move(parted.high));
+    children.insert(children.end(), others.begin(), others.end());
+    return add_part(parted.cut, std::move(children));
+  }
+
+  Separation separated(std::vector<int> low, std::vector<int> high) {
     // Whichever side has fewer unknowns at the cut gives them away.
     const int low_mark = mark(low), high_mark = mark(high);
     std::vector<int> low_cut = coupled_with(low, high_mark), high_cut = coupled_with(high, low_mark);
+    Separation parted{std::move(low), std::move(high), {}};
     const bool from_low = low_cut.size() < high_cut.size();
-    const std::vector<int>& cut = from_low ? low_cut : high_cut;
-    std::vector<int>& side = from_low ? low : high;
-    const int cut_mark = mark(cut);
-    side.erase(std::remove_if(side.begin(), side.end(), [&](int i) { return set_[i] == cut_mark; }), side.end());
-    std::vector<int> children = dissect_pieces(std::move(low));
-    const std::vector<int> others = dissect_pieces(std::move(high));
-    children.insert(children.end(), others.begin(), others.end());
-    return add_part(cut, std::move(children));
+    parted.cut = std::move(from_low ? low_cut : high_cut);
+    std::vector<int>& side = from_low ? parted.low : parted.high;
+    const int cut_mark = mark(parted.cut);
+    side.erase(std::remove_if(side.begin(), side.end(), [&](int k) { return set_[k] == cut_mark; }), side.end());
+    return parted;
   }
 
-  std::pair<std::vector<int>, std::vector<int>> halves(std::vector<int> piece) const {
+  /// The half that is fewer couplings away from one end of the piece, and the other.
+  /// \param piece  in the order of a breadth-first search, so that the last unknown is at an end
+  Separation halved_by_distance(const std::vector<int>& piece) {
+    const int within = mark(piece);
+    std::vector<int> order{piece.back()};
+    set_[piece.back()] = 0;
+    append_reachable(within, order);
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    return separated({order.begin(), middle}, {middle, order.end()});
+  }
+
+  Separation halved_by_plane(std::vector<int> piece) {
     Vector3 least = places_[piece[0]], most = least;
     for (const int i : piece) {
       least = least.cwiseMin(places_[i]);
@@ -116,7 +136,18 @@ class Dissection {
     std::nth_element(piece.begin(), middle, piece.end(), [&](int i, int j) {
       return places_[i][axis] != places_[j][axis] ? places_[i][axis] < places_[j][axis] : i < j;
     });
-    return {std::vector<int>(piece.begin(), middle), std::vector<int>(middle, piece.end())};
+    return separated({piece.begin(), middle}, {middle, piece.end()});
+  }
+
+  /// Breadth-first search from the unknowns in `found` over those that are marked; their marks go.
+  void append_reachable(int within, std::vector<int>& found) {
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (int e = first_[found[k]]; e < first_[found[k] + 1]; ++e) {
+        const int j = neighbour_[e];
+        if (set_[j] != within) continue;
+        set_[j] = 0;
+        found.push_back(j);
+      }
   }
 
   std::vector<int> coupled_with(const std::vector<int>& side, int other) const {

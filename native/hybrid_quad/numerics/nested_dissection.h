@@ -19,8 +19,9 @@ struct EliminationForest {
   std::vector<int> order;   ///< unknowns in the order of elimination
 };
 
-/// Cuts the unknowns in halves by planes, again and again, and each time takes out the unknowns on one side that are coupled
-/// with the other. What is not connected comes apart without any: the two coordinates of a grid mix at cones alone.
+/// Halves the unknowns again and again, and each time takes out those on one side that are coupled with the other: by planes,
+/// and where a plane meets too many (sheets, springs) by the number of couplings from one end, if that takes out fewer. What
+/// is not connected comes apart without any: the two coordinates of a grid mix at cones alone.
 /// \param lower   lower triangle; only its pattern counts
 /// \param places  where the unknowns are: couplings should be short
 EliminationForest nested_dissection(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context);

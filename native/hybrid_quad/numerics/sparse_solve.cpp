@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_quad/numerics/multifrontal_cholesky.h"
+#include "hybrid_quad/numerics/sparse_factor.h"
 
 namespace hybrid_quad {
 
@@ -18,7 +18,7 @@ double largest_diagonal(const SparseMatrix& lower) {
 }
 
 /// Factorizes A + shift I with the smallest shift of a few that leaves only positive pivots. \return success
-bool factorize(const SparseMatrix& lower, MultifrontalCholesky& factor, const RunContext& context) {
+bool factorize(const SparseMatrix& lower, SparseFactor& factor, const RunContext& context) {
   const double largest = largest_diagonal(lower);
   for (const double shift : {0.0, 1e-14, 1e-11, 1e-8})
     if (factor.factorize(lower, shift * largest, context)) return true;
@@ -34,7 +34,7 @@ Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& r
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
   const double size = right_side.norm();
   if (!(size > 0) || !std::isfinite(size)) return x;
-  MultifrontalCholesky factor(lower, places, context);
+  SparseFactor factor(lower, places, context);
   if (!factorize(lower, factor, context)) return x;
   Eigen::VectorXd residual = right_side;
   double left = size;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "hybrid_quad/numerics/multifrontal_cholesky.h"
+#include "hybrid_quad/numerics/sparse_factor.h"
 #include "hybrid_quad/periodic_field/phase_graph.h"
 
 namespace hybrid_quad {
@@ -50,7 +50,7 @@ class SlipProblem {
     assemble(stiffness, grid);
     context.checkpoint(0.6);
     if (!factored_) {
-      factor_ = std::make_unique<MultifrontalCholesky>(lower_, places(), context);
+      factor_ = std::make_unique<SparseFactor>(lower_, places(), context);
       if (!factor_->factorize(lower_, 0, context)) return;
       factored_ = true;
     }
@@ -155,7 +155,7 @@ class SlipProblem {
   std::vector<Eigen::Triplet<double>> entries_;
   SparseMatrix lower_;
   Eigen::VectorXd right_side_;
-  std::unique_ptr<MultifrontalCholesky> factor_;
+  std::unique_ptr<SparseFactor> factor_;
   bool factored_ = false;
 };
 
