@@ -9,9 +9,9 @@
 
 namespace hybrid_quad {
 
-/// A factorization of a symmetric positive definite matrix whose unknowns lie on a surface. Up to two hundred thousand
-/// unknowns by columns in minimum-degree order, which fills in least; beyond that multifrontal, which by then is several
-/// times as fast.
+/// A factorization of a symmetric positive definite matrix whose unknowns lie on a surface. Up to a hundred thousand
+/// unknowns by columns in minimum-degree order, which fills in least; beyond that multifrontal, which gets several
+/// times as fast with size.
 class SparseFactor {
  public:
   /// \param places  where the unknowns are (scene units): couplings should be short
