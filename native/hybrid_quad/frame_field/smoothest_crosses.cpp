@@ -36,7 +36,7 @@ std::vector<Complex> solved_directly(const CrossSystem& system, const RunContext
   }
   const SparseMatrix matrix = real_form(system);
   const Eigen::VectorXd x =
-      source.isZero(0) ? smallest_eigenpair(matrix, EigenOptions{}).vector : solve_sparse(matrix, source, context);
+      source.isZero(0) ? smallest_eigenpair(matrix, EigenOptions{}).vector : solve_sparse(matrix, source, {}, context);
   std::vector<Complex> values(system.size());
   for (int i = 0; i < system.size(); ++i) values[i] = {x[2 * i], x[2 * i + 1]};
   return values;

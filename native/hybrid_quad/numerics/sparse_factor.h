@@ -14,7 +14,7 @@ namespace hybrid_quad {
 /// times as fast with size.
 class SparseFactor {
  public:
-  /// \param places  where the unknowns are (scene units): couplings should be short
+  /// \param places  where the unknowns are (scene units): couplings should be short; empty: not known, by columns
   SparseFactor(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context);
 
   /// Factorizes A + shift I. \param lower with the pattern that the constructor saw

@@ -12,7 +12,7 @@ namespace hybrid_quad {
 /// Solves A x = b for a symmetric positive definite A, given by its lower triangle, whose unknowns lie on a surface, by a
 /// sparse factorization. On surface meshes that is faster than preconditioned conjugate gradients (incomplete Cholesky,
 /// plain and smoothed aggregation multigrid) up to a million unknowns.
-/// \param places  where the unknowns are (scene units): couplings should be short
+/// \param places  where the unknowns are (scene units): couplings should be short; empty: not known, for few unknowns
 ///
 /// Robust: a matrix that is singular to working precision is shifted until it can be factorized (a direction that A does
 /// not see then stays small), and the residual is improved against the unshifted matrix. Unknowns without any entry

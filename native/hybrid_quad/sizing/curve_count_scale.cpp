@@ -74,7 +74,7 @@ void CurveCountScale::apply(FrameField& field, const RunContext& context) const 
   Eigen::VectorXd right_side = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (count[v] > 0) right_side[v] = pin_weight_[v] * sum[v] / count[v];
-  const Eigen::VectorXd log_factor = solve_sparse(matrix_, right_side, context);
+  const Eigen::VectorXd log_factor = solve_sparse(matrix_, right_side, mesh.positions(), context);
   for (int f = 0; f < mesh.face_count(); ++f) {
     const auto& t = mesh.face(f);
     const double scale = std::exp((log_factor[t[0]] + log_factor[t[1]] + log_factor[t[2]]) / 3);
