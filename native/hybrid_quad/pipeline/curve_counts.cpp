@@ -74,11 +74,11 @@ std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<Cur
   return on;
 }
 
-CurveCountLedger::CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, int images)
+CurveCountLedger::CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, double scale, int images)
     : asked_(asked), accounts_(asked.size()), images_(images) {
   for (std::size_t i = 0; i < asked.size(); ++i)
     for (std::size_t k = 0; k + 1 < asked[i].vertices.size(); ++k)
-      accounts_[i].length += (soup.positions[asked[i].vertices[k + 1]] - soup.positions[asked[i].vertices[k]]).norm();
+      accounts_[i].length += (soup.positions[asked[i].vertices[k + 1]] - soup.positions[asked[i].vertices[k]]).norm() / scale;
 }
 
 std::vector<CountedChain> CurveCountLedger::chains_on(const TriangleMesh& component, const std::vector<int>& face,

@@ -16,8 +16,9 @@ std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<Cur
 /// The asked curves as far as they lie on each component, and what comes out on them.
 class CurveCountLedger {
  public:
+  /// \param scale  length in the soup of what is 1 long on the components
   /// \param images  mirror images that the remeshed part and the whole consist of
-  CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, int images);
+  CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, double scale, int images);
 
   /// What one component is to make of each asked curve: its edges there, and the number for their part of its length.
   /// \param face  #F: face of the domain \param on_domain  3 #F of the domain: the asked curve, or -1

@@ -251,7 +251,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   std::vector<ComponentPlan> plans;
   std::vector<Wishes> wishes;
   std::vector<MarkedEdges> marked;
-  CurveCountLedger counts(options.curve_counts, soup, images);
+  CurveCountLedger counts(options.curve_counts, soup, frame.scale, images);
   double wanted = 0;  // quads
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
