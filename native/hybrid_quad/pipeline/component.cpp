@@ -31,8 +31,8 @@ struct Settings {
   double curl_weight = 1e-5;
 };
 constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
-/// Quads extracted in all passes, of those that fit, after which no other pass begins: where each takes several tries to come
-/// near the asked count, as on broken surfaces, all passes would take minutes. One try each stays below.
+/// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
+/// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;
 constexpr double kFewMore = 1.1;  ///< no more quads than that for the sake of doubtful ones
 constexpr double kShorterWhereFlawed = 0.6;
@@ -365,7 +365,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
   std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
     if (any && settings.quads_factor > kFewMore && best.flawed_quads == 0) break;
-    if (any && extracted > kMostWork * plan.quads) break;
+    if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
