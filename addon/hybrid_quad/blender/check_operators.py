@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 
 from ..core.check import Defect, check
 from ..core.edge_borders import edge_keys
-from ..core.mesh_arrays import IntArray
 from .mesh_source import MeshSource, read_source
 from .operators import message_of, problem_of
 
@@ -74,9 +74,9 @@ class OBJECT_OT_hybrid_quad_select_defect(_CheckOperator):
         if (len(mesh.vertices), len(mesh.polygons)) != (len(source.vertices), len(source.polygons.sizes)):
             self.report({"ERROR"}, "The modifiers make another mesh of this one: apply or disable them first")
             return {"CANCELLED"}
-        _select(mesh, source, found)
         bpy.context.tool_settings.mesh_select_mode = _SELECT_MODES[found.element_kind]
         bpy.ops.object.mode_set(mode="EDIT")
+        _select(mesh, source, found)
         return {"FINISHED"}
 
 
@@ -97,30 +97,23 @@ def describe_row(row: dict[str, Any]) -> str:
 
 
 def _select(mesh: bpy.types.Mesh, source: MeshSource, defect: Defect) -> None:
-    """Marks a defect's elements, and what belongs to them, as selected; all else as not."""
-    vertices = np.zeros(len(mesh.vertices), bool)
-    edges = np.zeros(len(mesh.edges), bool)
-    faces = np.zeros(len(mesh.polygons), bool)
+    """Selects a defect's elements, and what belongs to them, in a mesh in Edit Mode; all else not."""
+    edit = bmesh.from_edit_mesh(mesh)
+    for elements in (edit.verts, edit.edges, edit.faces):
+        elements.ensure_lookup_table()
+        for element in elements:
+            element.select_set(False)
     if defect.element_kind == "face":
-        faces[defect.elements] = True
-        vertices[source.polygons.vertices[np.repeat(faces, source.polygons.sizes)]] = True
-        edges[_sides(mesh, source, faces)] = True
+        chosen = [edit.faces[face] for face in defect.elements]
     elif defect.element_kind == "edge":
-        keys = edge_keys(source.edges, len(vertices))
-        edges[np.isin(keys, edge_keys(defect.elements, len(vertices)))] = True
-        vertices[source.edges[edges]] = True
+        count = len(source.vertices)
+        flags = np.isin(edge_keys(source.edges, count), edge_keys(defect.elements, count))
+        chosen = [edit.edges[edge] for edge in np.flatnonzero(flags)]
     else:
-        vertices[defect.elements] = True
-    for elements, flags in ((mesh.vertices, vertices), (mesh.edges, edges), (mesh.polygons, faces)):
-        elements.foreach_set("select", flags)
-    mesh.update()
-
-
-def _sides(mesh: bpy.types.Mesh, source: MeshSource, faces: Any) -> IntArray:
-    """Edges of some faces."""
-    corners: IntArray = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("edge_index", corners)
-    return corners[np.repeat(faces, source.polygons.sizes)]
+        chosen = [edit.verts[vertex] for vertex in defect.elements]
+    for element in chosen:
+        element.select_set(True)
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
 CLASSES = (OBJECT_OT_hybrid_quad_check, OBJECT_OT_hybrid_quad_select_defect)

@@ -30,7 +30,7 @@ struct Settings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
 };
-constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
+constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}, {8.0, 1e-4}};
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
 /// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;
@@ -124,7 +124,8 @@ class ComponentRemesher {
   Extraction extract_with_count(const FrameField& unit) {
     constexpr int kTriesOfMany = 4, kTriesOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
-    const int tries = plan_.quads < kFew ? kTriesOfFew : kTriesOfMany;
+    // Later passes are there for flawed quads: the count matters less.
+    const int tries = plan_.quads < kFew && settings_.quads_factor == 1 ? kTriesOfFew : kTriesOfMany;
     const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
     const SurfaceIndex& index = *plan_.index;
     // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
