@@ -30,7 +30,7 @@ struct Settings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
 };
-constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}, {8.0, 1e-4}};
+constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
 /// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;

@@ -174,10 +174,6 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// The input's surface in coordinates in which its size and place make no difference, and what is asked of it there.
 void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& options, RunContext& context) {
   std::vector<Vector3> positions = built.mesh.positions();
