@@ -52,7 +52,7 @@ TEST(SizePlan, LeavesRoomySurfacesAlone) {
 TEST(SizePlan, RefinesWhereTold) {
   const ComponentPlan coarse = plan(test::icosphere(4), 0.3);
   const Vector3 pole(0, 0, 1);
-  const ComponentPlan fine = refined_plan(coarse, 1.0, {{pole, 0.1}});
+  const ComponentPlan fine = refined_plan(coarse, 1.0, false, {{pole, 0.1}});
   EXPECT_GT(fine.quads, coarse.quads);
   for (int v = 0; v < fine.mesh.vertex_count(); ++v) {
     EXPECT_LE(fine.target[v], coarse.target[v]);
@@ -63,7 +63,7 @@ TEST(SizePlan, RefinesWhereTold) {
       EXPECT_LT(fine.target[v], 0.15);
     }
   }
-  EXPECT_NEAR(refined_plan(coarse, 2.0, {}).quads, 2 * coarse.quads, 1e-6 * coarse.quads);
+  EXPECT_NEAR(refined_plan(coarse, 2.0, false, {}).quads, 2 * coarse.quads, 1e-6 * coarse.quads);
 }
 
 }  // namespace

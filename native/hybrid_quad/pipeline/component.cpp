@@ -370,8 +370,11 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
-      const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, limits) : ComponentPlan{};
-      ComponentResult result = ComponentRemesher(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass).run();
+      const bool as_needed = settings.quads_factor > kFewMore;
+      const ComponentPlan finer =
+          refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
+      ComponentResult result =
+          ComponentRemesher(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;

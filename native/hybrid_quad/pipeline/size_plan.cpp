@@ -160,6 +160,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region);
   plan.target = asked_lengths(*plan.index, plan.features, plan.length, density, feature_size, context);
   shorten_for_counts(plan);
+  plan.needed = plan.target;
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
   return plan;
 }
@@ -174,10 +175,12 @@ void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
   }
 }
 
-ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, const std::vector<LengthLimit>& limits) {
+ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
+                           const std::vector<LengthLimit>& limits) {
   ComponentPlan finer = plan;
   const double factor = 1 / std::sqrt(quads_factor);
-  for (double& t : finer.target) t *= factor;
+  for (std::size_t v = 0; v < finer.target.size(); ++v)
+    finer.target[v] = factor * (as_needed ? std::min(plan.target[v], plan.needed[v]) : plan.target[v]);
   if (!limits.empty()) {
     const double longest = *std::max_element(finer.target.begin(), finer.target.end());
     limit_lengths(*finer.index, limits, finer.target);

@@ -24,6 +24,7 @@ struct ComponentPlan {
   double length = 0;            ///< asked edge length at density 1, where nothing limits it (scene units)
   std::vector<double> unlimited;  ///< #V: asked edge length where nothing limits it
   std::vector<double> target;   ///< #V: asked edge length
+  std::vector<double> needed;   ///< #V: the same before anything gave way for the number of quads
   double quads = 0;             ///< that fit
 };
 
@@ -46,6 +47,8 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
 void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
 
 /// The plan with shorter edges: everywhere by a factor, and at some places.
-ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, const std::vector<LengthLimit>& limits);
+/// \param as_needed  nothing gives way for the number of quads
+ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
+                           const std::vector<LengthLimit>& limits);
 
 }  // namespace hybrid_quad
