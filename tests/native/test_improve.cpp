@@ -5,7 +5,9 @@
 #include <map>
 #include <random>
 
+#include "hybrid_quad/improve/convex_patch.h"
 #include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/mesh/surface_walk.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/workpiece.h"
@@ -446,6 +448,86 @@ TEST(Improve, NothingBadFromDegenerateInput) {
   improve(spiky, surface);
   EXPECT_TRUE(violations_of(spiky).empty());
   expect_on_features(spiky, surface);
+}
+
+int irregular_inside(const QuadMesh& mesh) {
+  std::vector<int> valence(mesh.positions.size(), 0);
+  for (const auto& q : mesh.quads)
+    for (const int v : q) ++valence[v];
+  int count = 0;
+  for (std::size_t v = 0; v < valence.size(); ++v) count += mesh.kind[v] == VertexKind::kFree && valence[v] != 4;
+  return count;
+}
+
+/// A sheet with a quad inside a quad, that is, four vertices of three quads and four of five.
+QuadMesh pillowed_sheet(const Surface& surface, int n) {
+  QuadMesh quads = sheet(n, n);
+  const std::array<int, 4> outer = quads.quads[(n / 2) * n + n / 2];
+  Vector3 centre = Vector3::Zero();
+  for (const int v : outer) centre += 0.25 * quads.positions[v];
+  std::array<int, 4> inner;
+  for (int i = 0; i < 4; ++i) {
+    inner[i] = static_cast<int>(quads.positions.size());
+    quads.positions.push_back(0.5 * (centre + quads.positions[outer[i]]));
+  }
+  quads.quads[(n / 2) * n + n / 2] = inner;
+  for (int i = 0; i < 4; ++i) quads.quads.push_back({outer[i], outer[(i + 1) % 4], inner[(i + 1) % 4], inner[i]});
+  bind(quads, surface);
+  return quads;
+}
+
+TEST(Requadrangulate, TakesAwayIrregularVerticesThatNothingCallsFor) {
+  const Surface surface(test::flat_grid(10, 10));
+  const QuadMesh quads = pillowed_sheet(surface, 8);
+  ASSERT_EQ(irregular_inside(quads), 8);
+  Workpiece piece(quads, surface.mesh, surface.features, *surface.index);
+  piece.bind_all();
+  Smoother smoother(piece, {});
+  EXPECT_EQ(requadrangulate_patches(piece, smoother, RunContext{}), 1);
+  const QuadMesh filled = piece.mesh.extract();
+  EXPECT_EQ(irregular_inside(filled), 0);
+  EXPECT_EQ(filled.quads.size(), 64u);
+  EXPECT_GT(shape_quality(filled).scaled_jacobian_min, 0.9);
+  EXPECT_EQ(filled.feature_edges.size(), quads.feature_edges.size());
+  expect_on_features(filled, surface);
+}
+
+TEST(Requadrangulate, LeavesLockedQuadsAlone) {
+  const Surface surface(test::flat_grid(10, 10));
+  const QuadMesh quads = pillowed_sheet(surface, 8);
+  Workpiece piece(quads, surface.mesh, surface.features, *surface.index);
+  piece.mesh.lock(4 * 8 + 4);
+  piece.bind_all();
+  Smoother smoother(piece, {});
+  EXPECT_EQ(requadrangulate_patches(piece, smoother, RunContext{}), 0);
+  EXPECT_EQ(piece.mesh.extract().quads, quads.quads);
+}
+
+TEST(ConvexPatch, StopsAtFeaturesAndClosesNotches) {
+  const Surface surface(test::flat_grid(10, 10));
+  QuadMesh quads = sheet(6, 6);
+  bind(quads, surface);
+  const EditMesh mesh(quads, surface.mesh, surface.features);
+  PatchGrower grower(mesh, 36);
+  ASSERT_TRUE(grower.start(1 * 7 + 1));
+  while (grower.grow()) {
+  }
+  EXPECT_FALSE(grower.patch()) << "two irregular vertices are the least that can be better";
+  const QuadMesh pillowed = pillowed_sheet(surface, 6);
+  const EditMesh other(pillowed, surface.mesh, surface.features);
+  PatchGrower around(other, 64);
+  ASSERT_TRUE(around.start(pillowed.quads[3 * 6 + 3][0]));
+  const auto patch = around.patch();
+  ASSERT_TRUE(patch);
+  const std::size_t sides = patch->sides.size();
+  for (std::size_t i = 0; i < sides; ++i) EXPECT_EQ(patch->sides[i].back(), patch->sides[(i + 1) % sides].front());
+  while (around.grow()) {
+  }
+  const auto whole = around.patch();
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->quads.size(), pillowed.quads.size());
+  EXPECT_EQ(whole->sides.size(), 4u);
+  for (const auto& side : whole->sides) EXPECT_EQ(side.size(), 7u);
 }
 
 TEST(ChainArcLengths, OrderSurvivesPointsOutOfPlace) {

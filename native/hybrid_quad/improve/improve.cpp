@@ -3,6 +3,7 @@
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/mend.h"
+#include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/untangle.h"
@@ -29,6 +30,7 @@ int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& co
     moves += straighten_features(piece, smoother, context);
     moves += open_straight_corners(piece, smoother, context);
     moves += improve_valences(piece, smoother, context);
+    moves += requadrangulate_patches(piece, smoother, context);
   }
   return moves;
 }

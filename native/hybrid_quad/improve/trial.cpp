@@ -19,13 +19,13 @@ Trial::Trial(Workpiece& piece, Smoother& smoother, std::vector<int> vertices, Me
     arcs_.push_back(piece_.arc[v]);
   }
   old_vertices_ = piece_.mesh.vertex_count();
-  collect_quads();
+  collect_quads(vertices_);
   before_ = measured();
 }
 
-void Trial::collect_quads() {
+void Trial::collect_quads(const std::vector<int>& vertices) {
   quads_.clear();
-  for (const int v : vertices_) quads_.insert(quads_.end(), piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
+  for (const int v : vertices) quads_.insert(quads_.end(), piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
   std::sort(quads_.begin(), quads_.end());
   quads_.erase(std::unique(quads_.begin(), quads_.end()), quads_.end());
 }
@@ -44,7 +44,7 @@ bool Trial::keep(double good_enough, double gain) {
   for (int v = old_vertices_; v < piece_.mesh.vertex_count(); ++v) inside.push_back(v);
   smoother_.relax(inside, 2, 0.1);
   smoother_.relax(inside, 3, 1e-3);
-  collect_quads();
+  collect_quads(inside);
   if (measured() >= std::min(before_ + gain, good_enough)) {
     piece_.mesh.forget_log();
     return true;
@@ -55,7 +55,7 @@ bool Trial::keep(double good_enough, double gain) {
     piece_.face[vertices_[i]] = faces_[i];
     piece_.arc[vertices_[i]] = arcs_[i];
   }
-  collect_quads();
+  collect_quads(vertices_);
   smoother_.update_frames(quads_, true);
   return false;
 }

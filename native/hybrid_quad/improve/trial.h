@@ -21,7 +21,7 @@ class Trial {
 
  private:
   double measured() const;
-  void collect_quads();
+  void collect_quads(const std::vector<int>& vertices);
 
   Workpiece& piece_;
   Smoother& smoother_;

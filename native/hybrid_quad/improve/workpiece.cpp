@@ -89,9 +89,9 @@ void Workpiece::bind_free(int v, const Vector3& normal) {
   mesh.positions[v] = point.position;
 }
 
-int Workpiece::add_vertex(const Vector3& position, int region_id, const Vector3& normal) {
+int Workpiece::add_vertex(const Vector3& position, int region_id, const Vector3& normal, int near) {
   const int v = mesh.add_vertex(position, region_id);
-  face.push_back(-1);
+  face.push_back(near);
   arc.push_back(0);
   previous.push_back(-1);
   next.push_back(-1);

@@ -34,7 +34,8 @@ struct Workpiece {
   void bind_free(int v, const Vector3& normal);
   /// The nearest point that can be reached from an input face without leaving its region.
   SurfacePoint walk(const Vector3& p, int start) const { return walk_to_nearest(input, features.face_region, p, start); }
-  int add_vertex(const Vector3& position, int region_id, const Vector3& normal);
+  /// \param near  an input face that may be near, -1: none known
+  int add_vertex(const Vector3& position, int region_id, const Vector3& normal, int near = -1);
   int add_quad(const EditMesh::Quad& corners, int region_id);
 
   int region_filter(int id) const { return id >= 0 && id < region_count ? id : -1; }

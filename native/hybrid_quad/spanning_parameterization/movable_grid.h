@@ -12,6 +12,12 @@ inline IntVector2 sum(const IntVector2& x, const IntVector2& y) { return {x[0] +
 inline IntVector2 minus(const IntVector2& x) { return {-x[0], -x[1]}; }
 inline bool is_zero(const IntVector2& x) { return x[0] == 0 && x[1] == 0; }
 
+/// The steps of one quad, by their direction: 0 along u, counterclockwise.
+inline constexpr IntVector2 kUnitSteps[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+inline int direction_of(const IntVector2& unit) {
+  return unit[0] != 0 ? (unit[0] > 0 ? 0 : 2) : (unit[1] > 0 ? 1 : 3);
+}
+
 /// Quads that a slide over a feature costs: it skews the grid on the other side too.
 constexpr double kFeatureCrossing = 0.3;
 

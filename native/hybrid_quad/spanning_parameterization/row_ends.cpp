@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "hybrid_quad/spanning_parameterization/closed_rows.h"
 #include "hybrid_quad/spanning_parameterization/sign_gauge.h"
 
 namespace hybrid_quad {
@@ -19,11 +20,6 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Quads that it costs to leave a cone with half a dislocation, which must find a second half.
 constexpr double kHalfDislocation = 1.0;
-constexpr IntVector2 kDirections[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-
-int direction_of(const IntVector2& unit) {
-  return static_cast<int>(std::find(std::begin(kDirections), std::end(kDirections), unit) - std::begin(kDirections));
-}
 int dot(const IntVector2& x, const IntVector2& y) { return x[0] * y[0] + x[1] * y[1]; }
 int row_count(const IntVector2& burgers) { return std::abs(burgers[0]) + std::abs(burgers[1]); }
 bool is_odd(const IntVector2& burgers) { return row_count(burgers) % 2 != 0; }
@@ -88,7 +84,7 @@ class RowEndCanceller {
 
   /// Whether a row's end that comes from `from` with direction d is welcome in face t with unit b.
   bool cancels(int from, int d, int t, const IntVector2& b) const {
-    const IntVector2 there = from == t ? sum(grid_.burgers(t), minus(kDirections[d])) : grid_.burgers(t);
+    const IntVector2 there = from == t ? sum(grid_.burgers(t), minus(kUnitSteps[d])) : grid_.burgers(t);
     return dot(there, b) < 0;
   }
 
@@ -152,7 +148,7 @@ class RowEndCanceller {
       if (d > longest || d >= best.cost) break;
       settled_[state] = stamp_;
       const int t = state / 4;
-      const IntVector2& b = kDirections[state % 4];
+      const IntVector2& b = kUnitSteps[state % 4];
       const double before = best.cost;
       if (is_cone(from))
         look_for_odd_end(t, d, best);
@@ -177,7 +173,7 @@ class RowEndCanceller {
     while (over_[state] >= 0) {
       const int h = over_[state], back = mesh_.opposite(h);
       route.crossed.push_back(h);
-      state = 4 * (h / 3) + direction_of(turned(kDirections[state % 4], frames_.matching[back]));
+      state = 4 * (h / 3) + direction_of(turned(kUnitSteps[state % 4], frames_.matching[back]));
     }
     route.direction = state % 4;
     std::reverse(route.crossed.begin(), route.crossed.end());
@@ -185,7 +181,7 @@ class RowEndCanceller {
 
   /// Whether features, strips and boundaries let a route through as things are now.
   bool is_open(const Route& route) const {
-    IntVector2 b = kDirections[route.direction];
+    IntVector2 b = kUnitSteps[route.direction];
     for (const int h : route.crossed) {
       if (!grid_.may_cross(h, b)) return false;
       b = turned(b, frames_.matching[h]);
@@ -195,9 +191,9 @@ class RowEndCanceller {
 
   /// Whether a route found earlier still does what it was found for.
   bool still_holds(const Route& route) const {
-    if (dot(grid_.burgers(route.from), kDirections[route.direction]) <= 0 || !is_open(route)) return false;
+    if (dot(grid_.burgers(route.from), kUnitSteps[route.direction]) <= 0 || !is_open(route)) return false;
     if (route.end != End::kFace) return true;
-    IntVector2 b = kDirections[route.direction];
+    IntVector2 b = kUnitSteps[route.direction];
     for (const int h : route.crossed) b = turned(b, frames_.matching[h]);
     return cancels(route.from, route.direction, route.to, b);
   }
@@ -210,7 +206,7 @@ class RowEndCanceller {
   }
 
   void perform(const Route& route) {
-    IntVector2 b = kDirections[route.direction];
+    IntVector2 b = kUnitSteps[route.direction];
     give(route.from, minus(b));
     for (const int h : route.crossed) {
       grid_.cross(h, b);
@@ -221,7 +217,7 @@ class RowEndCanceller {
   }
 
   void undo(const Route& route) {
-    IntVector2 b = kDirections[route.direction];
+    IntVector2 b = kUnitSteps[route.direction];
     std::vector<IntVector2> carried;
     for (const int h : route.crossed) {
       carried.push_back(b);
@@ -230,13 +226,13 @@ class RowEndCanceller {
     if (route.end == End::kBoundary) grid_.cross(route.end_halfedge, minus(b));
     if (route.end == End::kCone) give(route.to, minus(b));
     for (std::size_t i = route.crossed.size(); i-- > 0;) grid_.cross(route.crossed[i], minus(carried[i]));
-    give(route.from, kDirections[route.direction]);
+    give(route.from, kUnitSteps[route.direction]);
   }
 
   void enqueue(int f) {
     if (is_zero(grid_.burgers(f))) return;
     for (int d = 0; d < 4; ++d) {
-      if (dot(grid_.burgers(f), kDirections[d]) <= 0 || steps_ > budget_) continue;
+      if (dot(grid_.burgers(f), kUnitSteps[d]) <= 0 || steps_ > budget_) continue;
       Route route = search(f, d, 1);
       if (route.end == End::kNone) continue;
       route.version = ++version_[4 * f + d];
@@ -324,14 +320,58 @@ class RowEndCanceller {
       }
       context_.checkpoint(0.48);
     }
+    if (waiting.empty()) return;
+    const GeneratingLoops loops(mesh_);
+    for (const std::vector<int>& routes : waiting) try_routes(routes, &loops);
   }
 
-  bool try_routes(const std::vector<int>& routes) {
+  /// \param loops  around which a closed row may go to make things even, null: none may
+  bool try_routes(const std::vector<int>& routes, const GeneratingLoops* loops = nullptr) {
     std::size_t done = 0;
     for (; done < routes.size() && is_open(performed_[routes[done]]); ++done) perform(performed_[routes[done]]);
-    if (done == routes.size() && can_make_jumps_even(mesh_, grid_.grid())) return true;
+    if (done == routes.size() && (can_make_jumps_even(mesh_, grid_.grid()) || (loops && loops->fit() && close_rows(routes, *loops))))
+      return true;
     while (done > 0) undo(performed_[routes[--done]]);
     return false;
+  }
+
+  /// Makes the sums of jumps even around all loops by closed rows that start where one of the routes does.
+  bool close_rows(const std::vector<int>& routes, const GeneratingLoops& loops) {
+    constexpr std::size_t kMostFaces = 4;
+    std::vector<int> faces;
+    for (const int i : routes)
+      if (faces.size() < kMostFaces) faces.push_back(face_of(performed_[i].from));
+    std::vector<ClosedRow> closed;
+    for (GeneratingLoops::Set odd = loops.odd(grid_.grid()); odd != 0; odd = loops.odd(grid_.grid())) {
+      auto row = shortest_closed_row(grid_, loops, odd, faces, closed_row_states_, context_);
+      if (!row || !carry(*row)) break;
+      closed.push_back(std::move(*row));
+    }
+    if (can_make_jumps_even(mesh_, grid_.grid())) return true;
+    for (; !closed.empty(); closed.pop_back()) carry_back(closed.back(), closed.back().crossed.size());
+    return false;
+  }
+
+  /// \returns whether it went all the way around; where not, nothing has changed
+  bool carry(const ClosedRow& row) {
+    IntVector2 b = row.burgers;
+    for (std::size_t i = 0; i < row.crossed.size(); ++i) {
+      if (!grid_.may_cross(row.crossed[i], b)) {
+        carry_back(row, i);
+        return false;
+      }
+      grid_.cross(row.crossed[i], b);
+      b = turned(b, frames_.matching[row.crossed[i]]);
+    }
+    return true;
+  }
+
+  void carry_back(const ClosedRow& row, std::size_t steps) {
+    IntVector2 b = row.burgers;
+    for (std::size_t i = 0; i < steps; ++i) {
+      grid_.cross(row.crossed[i], minus(b));
+      b = turned(b, frames_.matching[row.crossed[i]]);
+    }
   }
 
   const TriangleMesh& mesh_;
@@ -350,6 +390,7 @@ class RowEndCanceller {
   int stamp_ = 0;
   unsigned steps_ = 0;   ///< states settled in all searches
   unsigned budget_ = 0;  ///< of them: row ends that are still there then stay
+  std::size_t closed_row_states_ = 2000000;  ///< for all closed rows together
 };
 
 }  // namespace
