@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bitset>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <tuple>
@@ -11,8 +10,6 @@
 namespace hybrid_quad {
 
 namespace {
-
-bool is_odd(const IntVector2& jump) { return (std::abs(jump[0]) + std::abs(jump[1])) % 2 != 0; }
 
 std::size_t loop_count(GeneratingLoops::Set set) { return std::bitset<64>(set).count(); }
 

@@ -42,6 +42,8 @@ inline IntVector2 windings(const IntVector2& burgers) {
 inline IntVector2 burgers_of(const IntVector2& windings) {
   return {windings[0] + windings[1], windings[0] - windings[1]};
 }
+/// Whether u + v is odd: across such a jump Psi changes its sign; such a Burgers vector ends an odd number of rows.
+inline bool is_odd(const IntVector2& x) { return (x[0] + x[1]) % 2 != 0; }
 /// Number of unit dislocations: |winding of a| + |winding of b|.
 int unit_count(const IntVector2& burgers);
 

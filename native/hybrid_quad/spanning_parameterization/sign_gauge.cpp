@@ -1,13 +1,10 @@
 #include "hybrid_quad/spanning_parameterization/sign_gauge.h"
 
-#include <cstdlib>
 #include <utility>
 
 namespace hybrid_quad {
 
 namespace {
-
-bool is_odd(const IntVector2& jump) { return (std::abs(jump[0]) + std::abs(jump[1])) % 2 != 0; }
 
 /// The sign that Psi has to take at every vertex, or nothing.
 std::vector<signed char> vertex_signs(const TriangleMesh& mesh, const LiftedGrid& grid) {
