@@ -12,22 +12,15 @@ import numpy as np
 from ..core.check import Defect, check
 from ..core.edge_borders import edge_keys
 from .mesh_source import MeshSource, read_source
-from .operators import message_of, problem_of
+from .operators import ActiveMeshOperator, message_of
 
 _SELECT_MODES = {"vertex": (True, False, False), "edge": (False, True, False), "face": (False, False, True)}
 
 
-class _CheckOperator(bpy.types.Operator):
+class _CheckOperator(ActiveMeshOperator):
     """Looks for defects in the active object's mesh as it is now."""
 
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = problem_of(context)
-        if problem:
-            cls.poll_message_set(problem)
-        return not problem
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:

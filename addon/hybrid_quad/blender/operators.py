@@ -30,7 +30,18 @@ _HARMLESS_EVENTS = frozenset(
 )
 
 
-class OBJECT_OT_hybrid_quad_remesh(bpy.types.Operator):
+class ActiveMeshOperator(bpy.types.Operator):
+    """Works on the active object where that is a mesh, in Object Mode, while no run goes on."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = problem_of(context)
+        if problem:
+            cls.poll_message_set(problem)
+        return not problem
+
+
+class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
     """Rebuild the surface of the active object from quads that follow its sharp edges and its shape"""
 
     bl_idname = "object.hybrid_quad_remesh"
@@ -39,13 +50,6 @@ class OBJECT_OT_hybrid_quad_remesh(bpy.types.Operator):
 
     # The run that goes on in the background, if any: Blender's window serves one at a time.
     current_run: BackgroundRun | None = None
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = problem_of(context)
-        if problem:
-            cls.poll_message_set(problem)
-        return not problem
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The whole run at once: for scripts and Blender without a window."""
