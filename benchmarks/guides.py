@@ -2,7 +2,7 @@
 """Measures how near results come to guides of all kinds, on real smooth models, as Markdown.
 
 Guides are plane sections of the models: around limbs and bodies, along backs, and two that cross. Directions: the median
-angle between edges within one edge length of the guide and the guide (asked: 5 degrees). Loops: the Hausdorff distance
+angle in the surface between edges within one edge length of the guide and the guide (asked: 5 degrees). Loops: the Hausdorff distance
 from the guide to its chain of edges, in edge lengths (asked: 0.1). Rings: the largest distance from middles of edges to the guide,
 in edge lengths (asked: 0.1), and the largest deviation from a right angle (asked: 10 degrees).
 """
@@ -110,20 +110,33 @@ def lengths(line: FloatArray) -> FloatArray:
 
 
 def median_angle(result, lines: list[FloatArray]) -> float:
-    """Degrees between edges near some lines and the lines, up to quarter turns; the median."""
+    """Degrees between edges near some lines and the lines, up to quarter turns; the median.
+
+    Within the surface: how steeply a line goes over its bumps is not for the quads to follow.
+    """
     quads = result.quads
-    a, b = result.vertices[quads].reshape(-1, 3), result.vertices[np.roll(quads, -1, axis=1)].reshape(-1, 3)
-    middle, edge = (a + b) / 2, b - a
+    of_quad = np.cross(*(result.vertices[quads[:, i + 2]] - result.vertices[quads[:, i]] for i in (0, 1)))
+    of_vertex = np.zeros_like(result.vertices)
+    np.add.at(of_vertex, quads, of_quad[:, None])
+    of_vertex /= np.linalg.norm(of_vertex, axis=1, keepdims=True)
+    begin, end = quads.ravel(), np.roll(quads, -1, axis=1).ravel()
+    a, b, normal = result.vertices[begin], result.vertices[end], of_vertex[begin] + of_vertex[end]
+    middle, edge = (a + b) / 2, within(b - a, normal)
     begin, end = (np.concatenate([line[shift : shift - 1 or None] for line in lines]) for shift in (0, 1))
     along = end - begin
     near = np.einsum("pij,ij->pi", middle[:, None] - begin, along) / (along**2).sum(axis=1)
     gap = np.linalg.norm(middle[:, None] - begin - np.clip(near, 0, 1)[:, :, None] * along, axis=2)
     which = gap.argmin(axis=1)
-    close = gap.min(axis=1) < np.linalg.norm(edge, axis=1).mean()
-    direction = along[which]
+    close = gap.min(axis=1) < np.linalg.norm(b - a, axis=1).mean()
+    direction = within(along[which], normal)
     cosine = np.abs((edge * direction).sum(axis=1)) / (np.linalg.norm(edge, axis=1) * np.linalg.norm(direction, axis=1))
     angle = np.degrees(np.arccos(np.clip(cosine, 0, 1)))[close]
     return float(np.median(np.minimum(angle, 90 - angle)))
+
+
+def within(vectors: FloatArray, normals: FloatArray) -> FloatArray:
+    """What vectors have square to some normals, of any length."""
+    return vectors - ((vectors * normals).sum(axis=1) / (normals**2).sum(axis=1))[:, None] * normals
 
 
 def is_valid(source: Path, result, judge: Path | None) -> bool:

@@ -17,6 +17,9 @@ KINDS = ("direction", "loop", "ring")
 RADIUS_IN_EDGES = 2.0  # how far directions act where nobody says
 
 _SAMPLES_PER_RADIUS = 4
+# Of the radius: the deviation of the bell over which the directions of a stroke are averaged, by default 0.3 edge lengths.
+# What it does within less is not for the quads to follow.
+_BLUR = 0.14
 _MOST_SAMPLES = 4000
 # Cosine between normals below which a place is on another side of the surface than the stroke: a thin sheet's back.
 _SAME_SIDE = 0.3
@@ -51,8 +54,8 @@ def guides_from_strokes(
     """Directions for the vertices near some strokes, as :func:`~hybrid_quad.remesh` takes them as `guides`.
 
     Every stroke is put onto the nearest surface. It acts on vertices within `radius` that lie on the same side of the
-    surface, the less the farther away, and on the corners of the triangles it passes however far. Where strokes meet,
-    they act as crosses: one direction and its normal say the same.
+    surface, with all its strength within half of that and the less the farther away beyond, and on the corners of the
+    triangles it passes however far. Where strokes meet, they act as crosses: one direction and its normal say the same.
 
     Parameters
     ----------
@@ -87,14 +90,16 @@ def guides_from_strokes(
     tangents = unit_vectors(tangents - (tangents * normal).sum(axis=1)[:, None] * normal)
     crosses = _Crosses(points, normals)
     for sample, vertex, distance in pairs_within(on_surface.positions, points, radius):
-        crosses.add(vertex, sample, (1 - (distance / radius) ** 2) ** 2, strengths[owner], tangents, normal)
+        part = distance / radius
+        share = np.exp(-0.5 * (part / _BLUR) ** 2)
+        crosses.add(vertex, sample, (1 - part**4) ** 2, share, strengths[owner], tangents, normal)
     # The triangles passed, so that a stroke also acts on a mesh coarser than its radius.
     passed = np.repeat(np.arange(len(places)), 3)
     vertex = triangles[on_surface.triangles].ravel().astype(np.int64)
     away = np.linalg.norm(points[vertex] - on_surface.positions[passed], axis=1)
     longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)[passed]
     falloff = np.where(away < radius, 0, 0.5 * np.maximum(1 - away / np.maximum(longest, 1e-300), 0.1))
-    crosses.add(vertex, passed, falloff, strengths[owner], tangents, normal)
+    crosses.add(vertex, passed, falloff, np.ones(len(passed)), strengths[owner], tangents, normal)
     return crosses.directions()
 
 
@@ -191,19 +196,23 @@ class _Crosses:
         vertex: npt.NDArray[np.int64],
         sample: npt.NDArray[np.int64],
         falloff: FloatArray,
+        share: FloatArray,
         strengths: FloatArray,
         tangents: FloatArray,
         normals: FloatArray,
     ) -> None:
-        """Sample `sample[i]`, one of those with `strengths`, `tangents` and `normals`, acts on `vertex[i]`."""
+        """Sample `sample[i]`, one of those with `strengths`, `tangents` and `normals`, acts on `vertex[i]`.
+
+        `falloff` of its strength is left there; beside other samples its direction counts as much as its `share`, too.
+        """
         weight = falloff * strengths[sample]
         near = (self._normals[vertex] * normals[sample]).sum(axis=1) > _SAME_SIDE
         near &= weight > 0
-        vertex, sample, weight = vertex[near], sample[near], weight[near]
+        vertex, sample, weight, share = vertex[near], sample[near], weight[near], share[near]
         direction = tangents[sample]
         angle = np.arctan2((direction * self._y[vertex]).sum(axis=1), (direction * self._x[vertex]).sum(axis=1))
         # Squared, so that of two strokes the nearer decides.
-        np.add.at(self._sum, vertex, weight**2 * np.exp(4j * angle))
+        np.add.at(self._sum, vertex, weight**2 * share * np.exp(4j * angle))
         np.maximum.at(self._strength, vertex, weight)
 
     def directions(self) -> FloatArray:

@@ -14,7 +14,7 @@ struct SmootherOptions {
   double chord_spring = 10;      ///< pull of curve vertices to equal chord error
   double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
   const GuideMap* guides = nullptr;  ///< on the input, may be null
-  double guide_weight = 10;      ///< of the squared angle between an edge and a guide, against the corners' shape
+  double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape
   const RingPulls* rings = nullptr;  ///< may be null
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
 };

@@ -109,7 +109,7 @@ FrameFieldOptions field_options(const WorkingSurface& surface, const Wishes& wis
 }
 
 std::vector<double> direction_weights(const FrameFieldOptions& field) {
-  constexpr double kGuided = 100;  // more costs shape and gains nothing: the integers of the grid decide then
+  constexpr double kGuided = 1;  // more makes grids that fit nowhere else; the smoothing turns edges the rest of the way
   std::vector<double> weights;
   for (const Vector3& guide : field.guides) weights.push_back(1 + kGuided * guide.squaredNorm());
   return weights;
