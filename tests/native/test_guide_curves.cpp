@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "hybrid_quad/guide_curves/guide_curves.h"
 #include "hybrid_quad/mesh/quad_complex.h"
@@ -179,6 +180,103 @@ TEST(Rings, AChainThatEndsInsideBecomesAStrip) {
     EXPECT_GT(grid.quads.quads.size(), quads);
     EXPECT_EQ(euler_characteristic(complex_of_quads(grid.quads.positions, grid.quads.quads)), 1);
     for (const GuideEdge& e : rings) EXPECT_GT((grid.quads.positions[e.a] - grid.quads.positions[e.b]).norm(), 1e-3);
+  }
+}
+
+/// Two rows of quads along a line, with the chain of edges between them on the only feature curve of `input`.
+/// \param points  on the curve, in its direction  \param side  from each to the row on its left
+QuadMesh rows_along(const std::vector<Vector3>& points, const std::vector<Vector3>& side, bool closed) {
+  QuadMesh quads;
+  const int n = static_cast<int>(points.size());
+  for (int i = 0; i < n; ++i)
+    for (const int row : {-1, 0, 1}) {
+      quads.positions.push_back(points[i] + row * side[i]);
+      quads.kind.push_back(row != 0 ? VertexKind::kFree : closed || (i > 0 && i + 1 < n) ? VertexKind::kCurve : VertexKind::kCorner);
+      quads.anchor.push_back(0);
+    }
+  for (int i = 0; i + (closed ? 0 : 1) < n; ++i) {
+    const int a = 3 * i, b = 3 * ((i + 1) % n);
+    quads.quads.push_back({a, b, b + 1, a + 1});
+    quads.quads.push_back({a + 1, b + 1, b + 2, a + 2});
+    quads.feature_edges.push_back({a + 1, b + 1, 0});
+  }
+  return quads;
+}
+
+struct FittedStroke {
+  double before, after;  ///< distance from the stroke to the chain, in edges
+  double moved;          ///< farthest, in edges
+  bool ends_stay;
+};
+
+FittedStroke fitted(const TriangleMesh& mesh, const GuideStroke& stroke, int edges, const Vector3& normal) {
+  constexpr double kLength = 0.1;
+  const EmbeddedStrokes embedded = embed_strokes(mesh, {}, {stroke}, kLength, RunContext{});
+  std::vector<char> is_feature(embedded.mesh.halfedge_count(), 0);
+  std::set<std::array<int, 2>> on_stroke;
+  for (const GuideEdge& e : embedded.edges) on_stroke.insert({std::min(e.a, e.b), std::max(e.a, e.b)});
+  for (int h = 0; h < embedded.mesh.halfedge_count(); ++h) {
+    const int a = embedded.mesh.from(h), b = embedded.mesh.to(h);
+    is_feature[h] = on_stroke.count({std::min(a, b), std::max(a, b)}) > 0;
+  }
+  FeatureGraph features = trace_features(embedded.mesh, is_feature, 170);
+  int chosen = 0;  // the boundary of a mesh has curves as well
+  for (int h = 0; h < embedded.mesh.halfedge_count(); ++h)
+    if (is_feature[h]) chosen = features.halfedge_curve[h];
+  std::swap(features.curves[0], features.curves[chosen]);
+  const FeatureCurve& curve = features.curves[0];
+  std::vector<Vector3> line;
+  std::vector<double> arc{0};
+  for (const int v : curve.vertices) {
+    line.push_back(embedded.mesh.position(v));
+    if (line.size() > 1) arc.push_back(arc.back() + (line.back() - line[line.size() - 2]).norm());
+  }
+  const auto at = [&](double s) {
+    std::size_t i = 0;
+    while (i + 2 < arc.size() && arc[i + 1] < s) ++i;
+    return Vector3(line[i] + (s - arc[i]) / (arc[i + 1] - arc[i]) * (line[i + 1] - line[i]));
+  };
+  std::vector<Vector3> points, side;
+  const double step = arc.back() / edges;
+  for (int i = 0; i < edges + (curve.closed ? 0 : 1); ++i) points.push_back(at(i * step));
+  const int n = static_cast<int>(points.size());
+  for (int i = 0; i < n; ++i) {
+    const Vector3 &before = points[curve.closed ? (i + n - 1) % n : std::max(0, i - 1)],
+                  &after = points[curve.closed ? (i + 1) % n : std::min(n - 1, i + 1)];
+    side.push_back(0.8 * step * normal.cross(after - before).normalized());
+  }
+  QuadMesh quads = rows_along(points, side, curve.closed);
+  const QuadMesh start = quads;
+  std::vector<GuideEdge> chain;
+  for (const QuadMesh::FeatureEdge& e : quads.feature_edges) chain.push_back({e.a, e.b, 0});
+  FittedStroke result;
+  result.before = measure_loop(embedded.traces[0], quads, chain, 0).distance;
+  fit_to_curves(quads, embedded.mesh, features, std::vector<char>(features.curves.size(), 1), {});
+  result.after = measure_loop(embedded.traces[0], quads, chain, 0).distance;
+  result.moved = 0;
+  for (std::size_t v = 0; v < quads.positions.size(); ++v)
+    result.moved = std::max(result.moved, (quads.positions[v] - start.positions[v]).norm() / step);
+  result.ends_stay = quads.positions[1] == start.positions[1] && quads.positions[3 * n - 2] == start.positions[3 * n - 2];
+  return result;
+}
+
+TEST(Loops, ChainsStraddleARoundGuide) {
+  const FittedStroke fit = fitted(test::icosphere(4), circle(2, 0.3), 12, Vector3(0, 0, 1));
+  EXPECT_GT(fit.before, 0.05);
+  EXPECT_LT(fit.after, 0.7 * fit.before);
+}
+
+TEST(Loops, VerticesSlideToABendWithinAnEdge) {
+  const TriangleMesh grid = test::flat_grid(40, 40);
+  const Vector3 corner(0.5, 0.5, 0);
+  for (const double turn : {0.5, 0.8, 1.2}) {
+    const Vector3 onward(std::cos(turn), std::sin(turn), 0);
+    const GuideStroke stroke{{corner - Vector3(0.35, 0, 0), corner, corner + 0.35 * onward}, GuideKind::kLoop};
+    const FittedStroke fit = fitted(grid, stroke, 7, Vector3(0, 0, 1));
+    EXPECT_GT(fit.before, 0.1) << turn;
+    EXPECT_LT(fit.after, 0.6 * fit.before) << turn;
+    EXPECT_LT(fit.moved, 0.35) << turn;
+    EXPECT_TRUE(fit.ends_stay) << turn;
   }
 }
 

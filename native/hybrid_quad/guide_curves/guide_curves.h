@@ -40,7 +40,8 @@ class GuideLine {
   explicit GuideLine(const StrokeTrace& trace);
 
   struct Place {
-    Vector3 position, along;  ///< unit; over a fifth of an edge either way, so that neither noise nor a kink decides alone
+    Vector3 position;
+    Vector3 along;  ///< unit; over a fifth of an edge either way, so that neither noise nor one side of a kink decides alone
     double distance = 0;
   };
   /// \pre not empty
@@ -50,7 +51,7 @@ class GuideLine {
 
  private:
   std::vector<std::array<Vector3, 2>> segments_;
-  std::vector<Vector3> along_;  // by segment
+  std::vector<std::array<Vector3, 2>> along_;  // at the ends of the segments
   SegmentIndex index_;
 };
 
@@ -100,13 +101,16 @@ std::vector<int> tight_bends(const TriangleMesh& mesh, const FeatureGraph& featu
 bool insert_ring(QuadMesh& quads, std::vector<GuideEdge>& crossed, int guide, const std::vector<std::array<int, 2>>& chain,
                  const TriangleMesh& input, const FeatureGraph& before, const FeatureGraph& after);
 
-/// Moves the vertices on some curves to their outer side, so that edges are on both sides of the curve and half as far
-/// from it. Feature edges must be in the order of the curves.
-/// \param chosen  #curves
-void straddle_curves(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const std::vector<char>& chosen);
+/// Moves vertices on some curves, also those where such curves meet, so that the curves are as near to their chains of edges as
+/// they can be: by less than a third of an edge, along the curve to where it bends and off it to its outer side, and not
+/// where quads would suffer. Feature edges must be in the order of the curves.
+/// \param chosen  #curves  \param rings  edges whose ends stay where they are
+void fit_to_curves(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const std::vector<char>& chosen,
+                   const std::vector<GuideEdge>& rings);
 
-/// Moves free vertices of edges that guides cross, both ends of an edge alike, so that the guides go through the middles:
-/// the last bit that smoothing leaves, and the height that the surface's curvature puts between a chord and the surface.
+/// Moves free vertices of edges that guides cross: both ends of an edge alike, so that the guides go through the middles (the
+/// last bit that smoothing leaves, and the height that the surface's curvature puts between a chord and the surface); then
+/// along the guides, by at most half an edge and not where quads would suffer, so that they cross at right angles.
 void centre_on_guides(QuadMesh& quads, const std::vector<GuideEdge>& rings, const std::vector<StrokeTrace>& traces);
 
 /// How near a mesh comes to what a guide asks, in edge lengths.

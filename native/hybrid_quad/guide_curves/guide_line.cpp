@@ -17,10 +17,11 @@ std::vector<std::array<Vector3, 2>> segments_of(const StrokeTrace& trace) {
   return segments;
 }
 
-Vector3 along_segment(const StrokeTrace::Run& run, int i) {
+/// The chord about sample i of a run.
+Vector3 along_at(const StrokeTrace::Run& run, int i) {
   const int last = static_cast<int>(run.samples.size()) - 1;  // of a closed run the first again
-  int from = i - kWindow, to = i + 1 + kWindow;
-  if (run.closed && last > 2 * kWindow + 1) {
+  int from = i - kWindow, to = i + kWindow;
+  if (run.closed && last > 2 * kWindow) {
     from = (from + last) % last;
     to = to % last;
   }
@@ -31,13 +32,16 @@ Vector3 along_segment(const StrokeTrace::Run& run, int i) {
 
 GuideLine::GuideLine(const StrokeTrace& trace) : segments_(segments_of(trace)), index_(segments_) {
   for (const StrokeTrace::Run& run : trace.runs)
-    for (int i = 0; i + 1 < static_cast<int>(run.samples.size()); ++i) along_.push_back(along_segment(run, i));
+    for (int i = 0; i + 1 < static_cast<int>(run.samples.size()); ++i) along_.push_back({along_at(run, i), along_at(run, i + 1)});
 }
 
 GuideLine::Place GuideLine::nearest(const Vector3& p) const {
   const SegmentPoint found = index_.nearest(p);
   const auto& [begin, end] = segments_[found.segment];
-  return {begin + found.fraction * (end - begin), along_[found.segment], std::sqrt(found.squared_distance)};
+  const auto& [first, last] = along_[found.segment];
+  Vector3 along = ((1 - found.fraction) * first + found.fraction * last).normalized();
+  if (!(along.squaredNorm() > 0)) along = first;
+  return {begin + found.fraction * (end - begin), along, std::sqrt(found.squared_distance)};
 }
 
 double GuideLine::length() const {

@@ -23,7 +23,7 @@ class GuideSettler {
   }
 
   void put_in(int ring);
-  void straddle();
+  void fit();
   void centre();
   void list_chains();
 
@@ -93,14 +93,14 @@ bool GuideSettler::is_flat(int h) const {
   return !plan_.mesh.is_boundary(h) && plan_.mesh.normal(h / 3).dot(plan_.mesh.normal(plan_.mesh.opposite(h) / 3)) > kCosine;
 }
 
-void GuideSettler::straddle() {
+void GuideSettler::fit() {
   std::vector<char> chosen(guided_.features.curves.size(), 1);
   for (int h = 0; h < plan_.mesh.halfedge_count(); ++h) {
     const int curve = guided_.features.halfedge_curve[h];
     if (curve >= 0 && (plan_.guides[h] < 0 || guides_.sets[plan_.guides[h]].is_marked || !is_flat(h))) chosen[curve] = 0;
   }
   QuadMesh moved = guided_.mesh;
-  straddle_curves(moved, plan_.mesh, guided_.features, chosen);
+  fit_to_curves(moved, plan_.mesh, guided_.features, chosen, guided_.rings);
   take_if_sound(std::move(moved));
 }
 
@@ -137,7 +137,7 @@ void settle_guides(GuidedQuads& guided, const ComponentPlan& plan, const HardGui
     settler.put_in(ring);
   }
   if (options.fit && options.improve) {
-    settler.straddle();
+    settler.fit();
     settler.centre();
   }
   settler.list_chains();
