@@ -8,7 +8,6 @@ The models are those of blend_samples and tests/data/meshes, whose lists name so
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
 from collections.abc import Callable
@@ -21,21 +20,14 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts" / "lib"), os.environ.get("HQ_ADDON_PARENT", str(ROOT / "addon"))]
+sys.path.insert(0, str(ROOT / "scripts" / "lib"))
+
+from stage import FEATURES, Stage, save_side_by_side  # noqa: E402
 
 import hybrid_quad  # noqa: E402
+from hybrid_quad.core.curve_counts import chains_of_edges  # noqa: E402
 from hybrid_quad.core.mesh_io import read_mesh  # noqa: E402
-from stage import (  # noqa: E402
-    FEATURES,
-    FEWER,
-    INPUT,
-    LINES,
-    MORE,
-    SURFACE,
-    Stage,
-    irregular_vertices,
-    save_side_by_side,
-)
+from hybrid_quad.core.strokes import joined_lines  # noqa: E402
 
 GUIDE = (0.05, 0.55, 0.20)
 DENSE, SPARSE = np.array((0.85, 0.25, 0.10)), np.array((0.92, 0.90, 0.86))
@@ -70,12 +62,8 @@ class Panels:
     ) -> None:
         """The surface with what is asked for: marked edges, drawn lines, density, or directions at places."""
         model, stage = self.model, self._stage
-        stage.clear()
         colours = None if density is None else SPARSE + _share(density)[:, None] * (DENSE - SPARSE)
-        stage.add_surface(model.points, model.faces, INPUT, colours)
-        stage.add_wires(model.points, _edges(model.faces), LINES, 0.0006 * self._extent)
-        if marked is not None:
-            stage.add_wires(model.points, marked, FEATURES, 0.003 * self._extent)
+        stage.draw_input(model.points, model.faces, _edges(model.faces), marked, 0.0018 * self._extent, colours)
         self._draw_lines(lines, 0.005)
         for begin, vector in zip(*vectors, strict=True) if vectors else []:
             stage.add_wires(np.stack([begin, begin + vector]), np.array([[0, 1]]), GUIDE, 0.0025 * self._extent)
@@ -87,22 +75,19 @@ class Panels:
         marked: np.ndarray | None = None,
         lines: list[np.ndarray] | None = None,
         cones: bool = False,
+        dots: np.ndarray | None = None,
     ) -> None:
-        """The quads; `marked` edges of theirs in red, drawn lines, and irregular vertices as balls where asked."""
+        """The quads; `marked` edges of theirs in red, drawn lines, irregular vertices as balls where asked, and red dots."""
         stage, points, quads = self._stage, result.vertices, result.quads
-        stage.clear()
         edges = _edges(quads)
         edge = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).mean())
         width = max(0.045 * edge, 0.0011 * self._extent)
-        stage.add_surface(points, list(quads), SURFACE)
-        stage.add_wires(points, edges, LINES, width)
-        if marked is not None:
-            stage.add_wires(points, marked, FEATURES, 2.0 * width)
+        stage.draw_quads(points, quads, edges, marked, width)
         self._draw_lines(lines, 0.003)
         if cones:
-            fewer, more = irregular_vertices(len(points), quads)
-            stage.add_balls(points[fewer], FEWER, 0.3 * edge)
-            stage.add_balls(points[more], MORE, 0.3 * edge)
+            stage.add_irregular_vertices(points, quads, 0.3 * edge)
+        if dots is not None:
+            stage.add_balls(dots, FEATURES, 0.22 * edge)
         self._take()
 
     def _draw_lines(self, lines: list[np.ndarray] | None, width: float) -> None:
@@ -162,7 +147,35 @@ def guides(samples: int) -> Panels:
     panels.draw_input(lines=lines)
     directions = hybrid_quad.guides_from_strokes(model.points, model.faces, lines, radius=0.12)
     result = _remesh(model, quads=2500, sharp_angle=None, guides=directions)
-    panels.draw_result(result, lines=lines)
+    panels.draw_result(result, lines=lines, cones=True)
+    return panels
+
+
+def hard_guides(samples: int) -> Panels:
+    """A line around the neck as a loop, and as a ring; another one crosses it."""
+    model = _sample("smooth_model", view=(75.0, 60.0))
+    panels = Panels(model, 450, samples)
+    lines = _belts(model)
+    for kind in ("loop", "ring"):
+        strokes = [hybrid_quad.Stroke(line, 1.0, kind) for line in lines]
+        result = _remesh(model, quads=1500, sharp_angle=None, strokes=strokes)
+        panels.draw_result(result, lines=lines, cones=True)
+        print("   ", [{k: g[k] for k in ("kind", "met", "edges", "distance", "angle")} for g in result.report["guides"]])
+    return panels
+
+
+def counts(samples: int) -> Panels:
+    """Two creases of a CAD part: left as they come, right with exactly 6 and 11 quads along them, counted by dots."""
+    model = _sample("cad_part", view=(60.0, 32.0))
+    curves = _two_creases(model)
+    lines = [model.points[curve] for curve in curves]
+    panels = Panels(model, 450, samples)
+    for asked in (None, [(curve, n) for curve, n in zip(curves, (6, 11), strict=True)]):
+        result = _remesh(model, quads=1000, sharp_angle=None, sharp_edges=model.edges_by_mark, curve_counts=asked)
+        on_lines = [_points_on(result.vertices, line) for line in lines]
+        print("   ", [len(each) - 1 for each in on_lines], "quads along the two creases")
+        panels.draw_result(result, marked=result.feature_edges, lines=lines, dots=np.concatenate(on_lines))
+        print("   ", result.report["curve_counts"])
     return panels
 
 
@@ -181,7 +194,7 @@ def density(samples: int) -> Panels:
     model, values = _painted_spot()
     panels = Panels(model, 450, samples)
     panels.draw_input(density=values)
-    panels.draw_result(_remesh(model, quads=3500, sharp_angle=None, density=values))
+    panels.draw_result(_remesh(model, quads=3500, sharp_angle=None, density=values), cones=True)
     return panels
 
 
@@ -190,7 +203,7 @@ def adaptivity(samples: int) -> Panels:
     model = _sample("sculpted_head", view=(78.0, 20.0))
     panels = Panels(model, 450, samples)
     for value in (0.0, 1.0):
-        panels.draw_result(_remesh(model, quads=2500, sharp_angle=None, adaptivity=value))
+        panels.draw_result(_remesh(model, quads=2500, sharp_angle=None, adaptivity=value), cones=True)
     return panels
 
 
@@ -248,7 +261,7 @@ def symmetry(samples: int) -> Panels:
 
 PICTURES: dict[str, Callable[[int], Panels]] = {
     make.__name__: make
-    for make in (features, borders, guides, field, density, adaptivity, fidelity, anisotropy, frames, symmetry)
+    for make in (features, borders, guides, hard_guides, counts, field, density, adaptivity, fidelity, anisotropy, frames, symmetry)
 }
 
 
@@ -300,6 +313,55 @@ def _lines_on_flank(model: Model) -> list[np.ndarray]:
                 line.append(tuple(hit))
         lines.append(np.array(line))
     return lines
+
+
+def _belts(model: Model) -> list[np.ndarray]:
+    """Around the belly, and along the back from the neck to the tail."""
+    low, high = model.points.min(axis=0), model.points.max(axis=0)
+    along = 0.62 * (high - low)[1] + low[1]
+    return [_section(model, 1, along), _section(model, 2, 0.36 * (high - low)[2] + low[2])]
+
+
+def _section(model: Model, axis: int, place: float) -> np.ndarray:
+    """The longest line in which a plane cuts a surface, in even steps."""
+    height = model.points[:, axis] - place
+    pieces = []
+    for face in model.faces:
+        ends = []
+        for a, b in zip(face, [*face[1:], face[0]], strict=True):
+            if (height[a] > 0) != (height[b] > 0):
+                first, second = min(a, b), max(a, b)  # the same point from both faces
+                share = height[first] / (height[first] - height[second])
+                ends.append((1 - share) * model.points[first] + share * model.points[second])
+        if len(ends) == 2:
+            pieces.append(np.array(ends))
+    lines = joined_lines(pieces)
+    arcs = [np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]) for line in lines]
+    longest = max(range(len(lines)), key=lambda index: arcs[index][-1])
+    at = np.linspace(0, arcs[longest][-1], 240)
+    return np.stack([np.interp(at, arcs[longest], lines[longest][:, i]) for i in range(3)], axis=1)
+
+
+def _two_creases(model: Model) -> list[list[int]]:
+    """The two creases nearest to the camera that are neither short nor long, as paths of vertices."""
+    tilt, turn = np.radians(model.view)
+    towards = np.array([np.sin(tilt) * np.sin(turn), -np.sin(tilt) * np.cos(turn), np.cos(tilt)])
+    chains = [path for path, _ in chains_of_edges(model.edges_by_mark, np.ones(len(model.edges_by_mark), np.int32))]
+    extent = float(np.ptp(model.points, axis=0).max())
+    fit = [path for path in chains if path[0] != path[-1] and 0.3 < _length(model.points[path]) / extent < 0.6]
+    return sorted(fit, key=lambda path: -float((model.points[path] @ towards).mean()))[:2]
+
+
+def _length(line: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+
+
+def _points_on(points: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Those of the points that lie on a line."""
+    begin, along = line[:-1], np.diff(line, axis=0)
+    share = np.clip(np.einsum("pij,ij->pi", points[:, None] - begin, along) / (along**2).sum(axis=1), 0, 1)
+    away = np.linalg.norm(points[:, None] - begin - share[:, :, None] * along, axis=2).min(axis=1)
+    return points[away < 1e-4 * _length(line)]
 
 
 def _around_and_up(model: Model) -> tuple[np.ndarray, np.ndarray]:

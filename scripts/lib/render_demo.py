@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 from pathlib import Path
 
 import bpy
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parent.parent / "addon")))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from stage import FEATURES, FEWER, MORE, SURFACE, Stage, save_side_by_side, unit  # noqa: E402
 
 import hybrid_quad  # noqa: E402
 from hybrid_quad.blender import edge_marks  # noqa: E402
@@ -27,18 +26,6 @@ from hybrid_quad.blender.remesh_task import prepare_task  # noqa: E402
 from hybrid_quad.core.mesh_io import write_mesh  # noqa: E402
 from hybrid_quad.core.remesh import remesh_with_options  # noqa: E402
 from hybrid_quad.core.snapshots import Snapshot  # noqa: E402
-from stage import (  # noqa: E402
-    FEATURES,
-    FEWER,
-    INPUT,
-    LINES,
-    MORE,
-    SURFACE,
-    Stage,
-    irregular_vertices,
-    save_side_by_side,
-    unit,
-)
 
 CROSS = (0.02, 0.10, 0.20)
 
@@ -78,21 +65,13 @@ def main() -> None:
     edge = float(np.linalg.norm(quads.vertices[faces[:, 0]] - quads.vertices[faces[:, 1]], axis=1).mean())
     polygons = np.split(task.source.polygons.vertices, np.cumsum(task.source.polygons.sizes)[:-1])
     thin = 0.035 * edge
-    stage.clear()
-    stage.add_surface(task.source.vertices, polygons, INPUT)
-    stage.add_wires(task.source.vertices, task.source.edges, LINES, 0.5 * thin)
-    stage.add_wires(task.source.vertices, task.marked_edges, FEATURES, 1.2 * thin)
+    stage.draw_input(task.source.vertices, polygons, task.source.edges, task.marked_edges, thin)
     pictures = [stage.render(out / "input.png")]
     if field is not None:
         pictures.append(draw_field(stage, field, edge, out / "field.png"))
-    stage.clear()
-    stage.add_surface(quads.vertices, list(faces), SURFACE)
     sharp = (quads.marks & edge_marks.SHARP) != 0
-    stage.add_wires(quads.vertices, quads.edges[~sharp], LINES, thin)
-    stage.add_wires(quads.vertices, quads.edges[sharp], FEATURES, 1.2 * thin)
-    fewer, more = irregular_vertices(len(quads.vertices), faces)
-    stage.add_balls(quads.vertices[fewer], FEWER, 0.22 * edge)
-    stage.add_balls(quads.vertices[more], MORE, 0.22 * edge)
+    stage.draw_quads(quads.vertices, faces, quads.edges[~sharp], quads.edges[sharp], thin)
+    stage.add_irregular_vertices(quads.vertices, faces, 0.22 * edge)
     pictures.append(stage.render(out / "result.png"))
     save_side_by_side(pictures, out / "overview.png")
 

@@ -1,9 +1,14 @@
-"""A scene to draw surfaces, lines and balls in, and to take pictures of. Runs in Blender."""
+"""A scene to draw surfaces, lines and balls in, and to take pictures of. Runs in Blender.
+
+Importing it lets Python find the add-on: in addon/, or in the folder named by HQ_ADDON_PARENT.
+"""
 
 from __future__ import annotations
 
 import math
+import os
 import struct
+import sys
 import time
 import zlib
 from pathlib import Path
@@ -12,6 +17,8 @@ import bpy
 import numpy as np
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Euler, Vector
+
+sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(Path(__file__).resolve().parents[2] / "addon")))
 
 SURFACE = (0.36, 0.50, 0.66)
 INPUT = (0.56, 0.54, 0.50)
@@ -105,6 +112,38 @@ class Stage:
         for thing in self._things:
             bpy.data.objects.remove(thing)
         self._things.clear()
+
+    def draw_input(
+        self,
+        points: np.ndarray,
+        faces: list,
+        edges: np.ndarray,
+        marked: np.ndarray | None,
+        width: float,
+        colours: np.ndarray | None = None,
+    ) -> None:
+        """A surface alone on the stage, with its edges in thin lines `width` thick and marked ones in red."""
+        self.clear()
+        self.add_surface(points, faces, INPUT, colours)
+        self.add_wires(points, edges, LINES, 0.5 * width)
+        if marked is not None:
+            self.add_wires(points, marked, FEATURES, 1.2 * width)
+
+    def draw_quads(
+        self, points: np.ndarray, quads: np.ndarray, edges: np.ndarray, marked: np.ndarray | None, width: float
+    ) -> None:
+        """Quads alone on the stage, with lines `width` thick along their edges, marked ones red."""
+        self.clear()
+        self.add_surface(points, list(quads), SURFACE)
+        self.add_wires(points, edges, LINES, width)
+        if marked is not None:
+            self.add_wires(points, marked, FEATURES, 1.6 * width)
+
+    def add_irregular_vertices(self, points: np.ndarray, quads: np.ndarray, radius: float) -> None:
+        """Balls: orange where three quads meet, blue where five or more do."""
+        fewer, more = irregular_vertices(len(points), quads)
+        self.add_balls(points[fewer], FEWER, radius)
+        self.add_balls(points[more], MORE, radius)
 
     def add_surface(self, points: np.ndarray, faces: list, colour: tuple, colours: np.ndarray | None = None) -> None:
         """Shaded smooth but for its creases; in one colour, or in one for each point."""
