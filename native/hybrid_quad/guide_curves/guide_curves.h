@@ -92,8 +92,8 @@ std::vector<int> tight_bends(const TriangleMesh& mesh, const FeatureGraph& featu
                              double length);
 
 /// Puts a strip of quads in the place of chains of edges, so that what was the chain crosses the strip's inner edges. A
-/// chain that ends inside the surface is continued by an edge, and around the row of quads on one of its sides, for a strip
-/// can't end there.
+/// chain that ends inside the surface is continued by an edge, and by the shortest way with few turns to its other end or the
+/// boundary (the row of quads on one of its sides, or on around the surface), for a strip can't end there.
 /// \param chain  edges to be replaced, as vertex pairs of `quads`, which must be on curves that `after` lacks
 /// \param before, after  feature curves of `input` that `quads` has, and those it is to have
 /// \param crossed  edges that guides cross; the strip's own follow

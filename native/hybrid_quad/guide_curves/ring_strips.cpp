@@ -1,9 +1,14 @@
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <map>
+#include <queue>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "hybrid_quad/guide_curves/guide_curves.h"
+#include "hybrid_quad/guide_curves/quad_sides.h"
 
 namespace hybrid_quad {
 
@@ -12,52 +17,6 @@ namespace {
 using Edge = std::array<int, 2>;
 
 Edge sorted_pair(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
-
-/// Quads by their directed sides.
-class Sides {
- public:
-  explicit Sides(const QuadMesh& mesh) : mesh_(mesh), corner_(mesh.positions.size(), -1) {
-    for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
-      for (int i = 0; i < 4; ++i) {
-        side_[{mesh.quads[q][i], mesh.quads[q][(i + 1) & 3]}] = 4 * q + i;
-        corner_[mesh.quads[q][i]] = 4 * q + i;
-      }
-  }
-
-  /// The side (dart 4 q + i) from a to b, or -1.
-  int at(int a, int b) const {
-    const auto found = side_.find({a, b});
-    return found == side_.end() ? -1 : found->second;
-  }
-  int from(int d) const { return mesh_.quads[d / 4][d & 3]; }
-  int to(int d) const { return mesh_.quads[d / 4][(d + 1) & 3]; }
-  static int previous(int d) { return (d & ~3) | ((d + 3) & 3); }
-  static int next(int d) { return (d & ~3) | ((d + 1) & 3); }
-  int opposite(int d) const { return at(to(d), from(d)); }
-  /// Darts that leave v counterclockwise, from the boundary if v is on it.
-  std::vector<int> fan(int v) const {
-    int first = corner_[v];
-    for (int d = first; opposite(d) >= 0;) {
-      d = next(opposite(d));
-      if (d == corner_[v]) break;
-      first = d;
-    }
-    if (opposite(first) >= 0) first = corner_[v];
-    std::vector<int> darts;
-    for (int d = first; d >= 0;) {
-      darts.push_back(d);
-      d = opposite(previous(d));
-      if (d == first) break;
-    }
-    return darts;
-  }
-  bool on_boundary(int v) const { return opposite(fan(v).front()) < 0; }
-
- private:
-  const QuadMesh& mesh_;
-  std::map<Edge, int> side_;
-  std::vector<int> corner_;
-};
 
 /// What a set of edges makes of a vertex on it: a copy for each sector of quads between two of these edges.
 struct Copies {
@@ -80,7 +39,9 @@ class RingInsertion {
   void add(const Edge& e);
   int go_on_straight(int end);
   bool close_end(int end);
-  bool row_beside(int end, bool left, std::vector<Edge>& loop) const;
+  int turn_cost(int came, int at, int next) const;
+  bool may_pass(int v) const;
+  bool may_end_at(int v, int start) const;
   bool may_split(const Edge& e) const;
   bool divide(int v);
   bool carry_features();
@@ -89,7 +50,7 @@ class RingInsertion {
   int region_of(int v) const;
 
   const QuadMesh& mesh_;
-  Sides sides_;
+  QuadSides sides_;
   const TriangleMesh& input_;
   const FeatureGraph& before_;
   const FeatureGraph& after_;
@@ -141,39 +102,23 @@ bool RingInsertion::add_chain(const std::vector<Edge>& chain) {
   return !ring_.empty();
 }
 
-/// The other three sides of each quad in the row on one side of the chain that begins at `end`, up to its other end or the
-/// boundary, less those between two quads of the row.
-bool RingInsertion::row_beside(int end, bool left, std::vector<Edge>& loop) const {
-  std::set<int> row;
-  std::set<int> vertices;
-  int from = end, to = neighbours_.at(end)[0], last_far = -1;
-  for (;;) {
-    const int d = left ? sides_.at(from, to) : sides_.at(to, from);
-    if (d < 0 || !row.insert(d / 4).second) return false;
-    // Corners beyond: near_far next to `from`, to_far next to `to`.
-    const int near_far = left ? sides_.from(Sides::previous(d)) : sides_.to(Sides::next(d));
-    const int to_far = left ? sides_.to(Sides::next(d)) : sides_.from(Sides::previous(d));
-    if (last_far >= 0 && near_far != last_far) return false;
-    if (last_far < 0) loop.push_back({from, near_far});
-    if (last_far < 0 && !vertices.insert(near_far).second) return false;
-    if (!vertices.insert(to_far).second) return false;
-    loop.push_back({near_far, to_far});
-    last_far = to_far;
-    const std::vector<int>& on = neighbours_.at(to);
-    if (on.size() == 1) {
-      if (!sides_.on_boundary(to)) loop.push_back({to_far, to});
-      break;
-    }
-    if (on.size() != 2) return false;
-    const int next = on[0] == from ? on[1] : on[0];
-    from = to;
-    to = next;
-  }
-  for (const Edge& e : loop)
-    if (!may_split(e) || ring_.count(sorted_pair(e[0], e[1]))) return false;
-  for (const int v : vertices)
-    if (neighbours_.count(v)) return false;
-  return true;
+/// What it costs a strip that came from `came` to `at` to go on to `next`: turning makes irregular vertices.
+int RingInsertion::turn_cost(int came, int at, int next) const {
+  constexpr int kTurn = 4;  // edges
+  const std::vector<int> fan = sides_.fan(at);
+  if (fan.size() != 4) return kTurn;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (sides_.to(fan[i]) == came) return sides_.to(fan[(i + 2) & 3]) == next ? 0 : kTurn;
+  return kTurn;
+}
+
+bool RingInsertion::may_pass(int v) const { return neighbours_.count(v) == 0 && on_kept_.count(v) == 0; }
+
+/// Another end of the ring, or a place on the boundary away from corners.
+bool RingInsertion::may_end_at(int v, int start) const {
+  const auto found = neighbours_.find(v);
+  if (found != neighbours_.end()) return v != start && found->second.size() == 1 && !sides_.on_boundary(v);
+  return mesh_.kind[v] == VertexKind::kCurve && sides_.on_boundary(v);
 }
 
 /// Adds the edge that continues the ring at its end, so that what turns around the end does so beyond it.
@@ -198,12 +143,41 @@ void RingInsertion::add(const Edge& e) {
   neighbours_[e[1]].push_back(e[0]);
 }
 
+/// Continues the ring from an end inside the surface to another end or the boundary, by the shortest way along edges that
+/// touches neither the ring nor features that stay, every turn being as much as some edges. \return false if there is none
 bool RingInsertion::close_end(int end) {
-  for (const bool left : {true, false}) {
-    std::vector<Edge> loop;
-    if (!row_beside(end, left, loop)) continue;
-    for (const Edge& e : loop) add(e);
-    return true;
+  struct Step {
+    int cost, dart;
+    bool operator>(const Step& other) const { return std::tie(cost, dart) > std::tie(other.cost, other.dart); }
+  };
+  std::vector<int> cost(4 * mesh_.quads.size(), std::numeric_limits<int>::max()), before(cost.size(), -1);
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
+  const auto reach = [&](int dart, int came, int so_far, int from_dart) {
+    const int at = sides_.from(dart), next = sides_.to(dart);
+    if (!may_split({at, next}) || ring_.count(sorted_pair(at, next))) return;
+    const bool ends = may_end_at(next, end);
+    if (!ends && !may_pass(next)) return;
+    int sum = so_far + 1 + turn_cost(came, at, next);
+    if (ends && neighbours_.count(next)) sum += turn_cost(at, next, neighbours_.at(next)[0]);
+    if (sum >= cost[dart]) return;
+    cost[dart] = sum;
+    before[dart] = from_dart;
+    queue.push({sum, dart});
+  };
+  for (const int d : sides_.fan(end)) reach(d, neighbours_.at(end)[0], 0, -1);
+  while (!queue.empty()) {
+    const Step step = queue.top();
+    queue.pop();
+    if (step.cost > cost[step.dart]) continue;
+    const int at = sides_.to(step.dart);
+    if (may_end_at(at, end)) {
+      std::set<int> passed;
+      for (int d = step.dart; d >= 0; d = before[d])
+        if (!passed.insert(sides_.to(d)).second) return false;
+      for (int d = step.dart; d >= 0; d = before[d]) add({sides_.from(d), sides_.to(d)});
+      return true;
+    }
+    for (const int d : sides_.fan(at)) reach(d, sides_.from(step.dart), step.cost, step.dart);
   }
   return false;
 }
