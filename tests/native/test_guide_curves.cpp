@@ -7,6 +7,7 @@
 #include "hybrid_quad/guide_curves/guide_curves.h"
 #include "hybrid_quad/mesh/quad_complex.h"
 #include "hybrid_quad/mesh/segment_index.h"
+#include "hybrid_quad/quality/quality.h"
 #include "support/meshes.h"
 #include "support/quad_complexes.h"
 
@@ -179,6 +180,7 @@ TEST(Rings, AChainThatEndsInsideBecomesAStrip) {
     EXPECT_EQ(rings.size(), grid.chain.size() + 1);
     EXPECT_GT(grid.quads.quads.size(), quads);
     EXPECT_EQ(euler_characteristic(complex_of_quads(grid.quads.positions, grid.quads.quads)), 1);
+    EXPECT_EQ(shape_quality(grid.quads).irregular_vertices, 0);  // it goes straight on to the boundary
     for (const GuideEdge& e : rings) EXPECT_GT((grid.quads.positions[e.a] - grid.quads.positions[e.b]).norm(), 1e-3);
   }
 }
@@ -219,7 +221,7 @@ FittedStroke fitted(const TriangleMesh& mesh, const GuideStroke& stroke, int edg
     const int a = embedded.mesh.from(h), b = embedded.mesh.to(h);
     is_feature[h] = on_stroke.count({std::min(a, b), std::max(a, b)}) > 0;
   }
-  FeatureGraph features = trace_features(embedded.mesh, is_feature, 170);
+  FeatureGraph features = trace_features(embedded.mesh, is_feature, FeatureOptions{}.corner_angle);
   int chosen = 0;  // the boundary of a mesh has curves as well
   for (int h = 0; h < embedded.mesh.halfedge_count(); ++h)
     if (is_feature[h]) chosen = features.halfedge_curve[h];
