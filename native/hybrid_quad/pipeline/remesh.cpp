@@ -226,6 +226,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   report.defects = as_given.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
+  if (context.on_snapshot) context.on_snapshot(snapshot_of(as_given.mesh));
 
   if (options.symmetry.planes != 0 || options.symmetry.detect)
     report.symmetry = clock.measure("symmetry", [&] {
