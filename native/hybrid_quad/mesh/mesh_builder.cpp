@@ -24,6 +24,9 @@ constexpr double kLooseShare = 0.9;      ///< share of open edges above which a 
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
 constexpr double kLeastShare = 1e-10;    ///< of the area; parts with less are specks, a hundred thousandth as long as the rest
+/// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
+/// cut but a volume's inside. A surface has 1.5 edges a triangle.
+constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
 constexpr double kLeastExtent = 1e-11;   ///< over the distance from the origin: less leaves no bits for the places of quads
 
 /// Builds the mesh step by step; every step notes the defects that it found.
@@ -242,6 +245,9 @@ BuiltMesh MeshBuilder::glue() {
   for (int f = 0; f < static_cast<int>(glued.was_flipped.size()); ++f)
     if (glued.was_flipped[f]) flipped.push_back(f);
   for (const auto& e : glued.non_manifold_edges) edge_ends.insert(edge_ends.end(), e.begin(), e.end());
+  const double faces = static_cast<double>(triangles_.size());
+  if (glued.non_manifold_edges.size() > kMostCrowded * faces && glued.torn_sides > kMostTorn * faces)
+    refuse("not_a_surface", "Most edges are in more than two faces, as inside a volume: this is no surface.", "edge", std::move(edge_ends));
   note("flipped_face", "face", polygons_of(flipped), "turned around");
   note("non_manifold_edge", "edge", std::move(edge_ends), "the surface is cut there");
   note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
