@@ -7,6 +7,7 @@
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
+#include "hybrid_quad/improve/flat_quads.h"
 #include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
@@ -85,6 +86,7 @@ class ComponentRemesher {
     prepare();
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
+    result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
     require_sound("improve", violations_of(result_.mesh));
     result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
     const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);

@@ -209,6 +209,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   split_polychords += other.split_polychords;
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
+  opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;
 }
@@ -290,6 +291,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex)
       input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
+    input_vertex.resize(plans[i].mesh.vertex_count(), -1);  // what halving long edges added; corners in folds, now and then
     append(result, whole_of(parts.back(), components[i].mesh, marked[i].ends, domain.options), parts.back(), input_vertex, images, guided);
     singular_area += parts.back().singular_area;
     combinatorial_area += parts.back().combinatorial_area;
