@@ -398,7 +398,7 @@ def _require_whole_header(path: Path) -> None:
     """Raises ValueError where a PLY file ends in its header, whose end meshio would look for without end."""
     with path.open("rb") as file:
         if not any(line.strip() == b"end_header" for line in file):
-            raise ValueError("ends before the end of its header")
+            raise ValueError("no PLY file, or one that ends in its header")
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

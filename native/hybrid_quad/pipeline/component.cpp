@@ -103,6 +103,12 @@ class ComponentRemesher {
                                    context_.in_stage("working surface", 0, 0.2));
     });
     result_.working_faces = surface_.mesh.face_count();
+    // Shapes that it did not reach may still do: what is assembled is checked against the input again.
+    for (const std::string& violation : violations_of(surface_, mesh_, plan_.features)) {
+      ++result_.repairs.broken_promises;
+      result_.warnings.push_back("the working surface is not as promised: " + violation);
+      break;
+    }
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
   }
 
