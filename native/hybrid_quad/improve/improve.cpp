@@ -1,5 +1,7 @@
 #include "hybrid_quad/improve/improve.h"
 
+#include <algorithm>
+
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/mend.h"
@@ -114,7 +116,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   }
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;
-  if (report.flawed_after > report.flawed_before || area_of(best) < kLeastArea * area_of(quads)) {
+  if (report.flawed_after > report.flawed_before || area_of(best) < kLeastArea * std::min(area_of(quads), input.total_area())) {
     report.connectivity_moves = 0;
     report.flawed_after = report.flawed_before;
     report.restored_quads = static_cast<int>(quads.quads.size());
