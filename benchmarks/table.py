@@ -87,7 +87,9 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
     valid = sum(outcome.status == "valid" for outcome in outcomes)
     lines = [f"{valid} of {len(outcomes)} runs are valid."]
     others = Counter(outcome.status for outcome in outcomes if outcome.status != "valid")
-    refused = Counter(str(outcome.report.get("code") or "unreadable") for outcome in outcomes if outcome.status == "refused")
+    refused = Counter(
+        str(outcome.report.get("code") or "unreadable") for outcome in outcomes if outcome.status == "refused"
+    )
     lines += [f"- {status}: {count}" for status, count in others.most_common()]
     lines += [f"  - for {code}: {count}" for code, count in refused.most_common()]
     checks = Counter(check.split(":")[0] for outcome in outcomes for check in outcome.failed)

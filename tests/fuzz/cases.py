@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from support import surfaces
 
 from hybrid_quad.core.mesh_io import read_mesh
+from support import surfaces
 
 Faces = list[list[int]]
 Mesh = tuple[np.ndarray, Faces]
@@ -143,7 +143,15 @@ def _several(random: np.random.Generator) -> Mesh:
     return np.concatenate(vertices), faces
 
 
-SURFACES: list[Callable[[np.random.Generator], Mesh]] = [_torus, _sphere, _box, _open_surface, _voxels, _voxels, _several]
+SURFACES: list[Callable[[np.random.Generator], Mesh]] = [
+    _torus,
+    _sphere,
+    _box,
+    _open_surface,
+    _voxels,
+    _voxels,
+    _several,
+]
 
 
 # Damages
@@ -167,7 +175,9 @@ def _slivers(mesh: Mesh, random: np.random.Generator) -> Mesh:
     for face in [face for face in faces if random.random() < share]:
         a, b, c = face[0], face[1], face[2]
         near, inside = 10.0 ** random.uniform(-6, 0), random.random()
-        vertices.append(vertices[a] + near * (inside * (vertices[b] - vertices[a]) + (1 - inside) * (vertices[c] - vertices[a])) / 2)
+        vertices.append(
+            vertices[a] + near * (inside * (vertices[b] - vertices[a]) + (1 - inside) * (vertices[c] - vertices[a])) / 2
+        )
         new = len(vertices) - 1
         faces.remove(face)
         faces += [[face[i], face[(i + 1) % len(face)], new] for i in range(len(face))]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Damaged mesh files: each is read, or refused with a MeshFileError that names it; nothing else may come of it.
 
-    fuzz_readers.py [--seconds S] [--first SEED] [--out DIR]
+fuzz_readers.py [--seconds S] [--first SEED] [--out DIR]
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from support import surfaces  # noqa: E402
-
 from hybrid_quad.core.mesh_io import MeshFileError, read_line_elements, read_mesh  # noqa: E402
+from support import surfaces  # noqa: E402
 
 OBJ = b"""# a comment
 v 0 0 0 0.1 0.2 0.3
@@ -66,12 +65,32 @@ facet normal 0 0 1
 endfacet
 endsolid s
 """
-WORDS = [b"nan", b"-inf", b"1e999", b"-1", b"0", b"99999999999999999999", b"4294967296", b"f", b"v ", b"\n", b"\r\n", b"\x00", b"/", b"\\\n", b"\xff\xfe", b"list", b"binary_little_endian"]
+WORDS = [
+    b"nan",
+    b"-inf",
+    b"1e999",
+    b"-1",
+    b"0",
+    b"99999999999999999999",
+    b"4294967296",
+    b"f",
+    b"v ",
+    b"\n",
+    b"\r\n",
+    b"\x00",
+    b"/",
+    b"\\\n",
+    b"\xff\xfe",
+    b"list",
+    b"binary_little_endian",
+]
 
 
 def binary_ply() -> bytes:
     """A binary file with two triangles."""
-    head = "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    head = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    )
     head += "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
     points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4").tobytes()
     faces = b"".join(b"\x03" + np.array(face, "<i4").tobytes() for face in ([0, 1, 2], [0, 2, 3]))

@@ -14,7 +14,14 @@ from hybrid_quad.core.snapshots import Snapshot
 from hybrid_quad.core.validation import topology, violations
 from repaired import with_edges_apart
 
-NO_ELEMENTS = {"empty_mesh", "no_area", "malformed_faces", "coordinates_too_coarse", "symmetry_side_empty", "symmetry_plane_missed"}
+NO_ELEMENTS = {
+    "empty_mesh",
+    "no_area",
+    "malformed_faces",
+    "coordinates_too_coarse",
+    "symmetry_side_empty",
+    "symmetry_plane_missed",
+}
 BAD = ("invalid", "internal_error", "exception", "bad_refusal", "timeout", "crash")
 
 

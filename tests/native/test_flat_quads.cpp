@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "hybrid_quad/improve/flat_quads.h"
+#include "hybrid_quad/improve/improve.h"
 
 namespace hybrid_quad {
 namespace {

@@ -219,7 +219,9 @@ def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more)
 @pytest.mark.parametrize("options", [[], ["--report", "/proc/report.json"]], ids=["mesh", "report"])
 def test_a_place_where_no_file_can_be_made(tmp_path, torus, capfd, options):
     if options:
-        unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", *options], exit_codes.WRONG_USAGE)
+        unchanged(
+            tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", *options], exit_codes.WRONG_USAGE
+        )
     else:
         assert main(["remesh", torus, "/proc/out.obj", "--quads", "100"]) == exit_codes.WRONG_USAGE
     assert "/proc/" in capfd.readouterr().err
@@ -230,7 +232,9 @@ def tiny_disk(tmp_path):
     """A file system of 32 kB, full with what is on it."""
     folder = tmp_path / "disk"
     folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=32k", "tmpfs", folder], capture_output=True, check=False)
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=32k", "tmpfs", folder], capture_output=True, check=False
+    )
     if mounted.returncode:
         pytest.skip("mounting is not allowed here")
     yield folder

@@ -72,7 +72,16 @@ def test_the_command_writes_the_same_bytes_with_any_number_of_threads(tmp_path, 
     more = []
     if variant == "wishes":
         np.savetxt(tmp_path / "density.txt", 1 + vertices[:, 0])
-        more = ["--density", str(tmp_path / "density.txt"), "--adaptivity", "0.3", "--symmetry", "z", "--symmetry-center", "bounds"]
+        more = [
+            "--density",
+            str(tmp_path / "density.txt"),
+            "--adaptivity",
+            "0.3",
+            "--symmetry",
+            "z",
+            "--symmetry-center",
+            "bounds",
+        ]
     written = set()
     for threads in (1, 2, 4):
         out = tmp_path / f"out{threads}.obj"
@@ -84,7 +93,11 @@ def test_the_command_writes_the_same_bytes_with_any_number_of_threads(tmp_path, 
 
 def test_wishes_with_other_threads():
     vertices, faces = TORUS
-    wishes = {"density": np.linspace(0.5, 2, len(vertices)), "guides": np.roll(vertices, 1, axis=1), "chord_error": None}
+    wishes = {
+        "density": np.linspace(0.5, 2, len(vertices)),
+        "guides": np.roll(vertices, 1, axis=1),
+        "chord_error": None,
+    }
     first = hybrid_quad.remesh(vertices, faces, quads=400, threads=1, **wishes)
     for threads in (2, 4):
         assert same(first, hybrid_quad.remesh(vertices, faces, quads=400, threads=threads, **wishes))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from fuzz.cases import load_case, make_case
 from fuzz.verdict import verdict_of
 

@@ -1,4 +1,4 @@
-#include "hybrid_quad/improve/flat_quads.h"
+#include "hybrid_quad/improve/improve.h"
 
 #include <array>
 #include <vector>

@@ -7,7 +7,6 @@
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
-#include "hybrid_quad/improve/flat_quads.h"
 #include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
