@@ -88,13 +88,20 @@ def area_changed(vertices: FloatArray, polygons: Polygons, points: FloatArray, t
     """Whether the repaired surface has another area than the input, duplicates counted once or twice."""
     used = np.unique(polygons.vertices)
     centre, size = points.mean(axis=0), np.ptp(points, axis=0).max()
-    given = fan_triangles(polygons)
     places = np.zeros(vertices.shape)
     places[used] = (vertices[used] - centre) / size
     _, welded = np.unique(places, axis=0, return_inverse=True)
-    once = np.unique(np.sort(welded.reshape(-1)[given], axis=1), axis=0, return_index=True)[1]
-    least, most, found = _area(places, given[once]), _area(places, given), _area((points - centre) / size, triangles)
+    faces = np.split(polygons.vertices, np.cumsum(polygons.sizes)[:-1])
+    once = {tuple(sorted(welded.reshape(-1)[face].tolist())): face for face in faces}.values()
+    least = sum(_area_inside(places[face]) for face in once)
+    most, found = _area(places, fan_triangles(polygons)), _area((points - centre) / size, triangles)
     return not (1 - TOLERANCE) * least <= found <= (1 + TOLERANCE) * most
+
+
+def _area_inside(ring: FloatArray) -> float:
+    """Of a flat polygon, concave or not."""
+    arms = ring[1:] - ring[:1]
+    return float(0.5 * np.linalg.norm(np.cross(arms[:-1], arms[1:]).sum(axis=0)))
 
 
 def _area(points: FloatArray, triangles: IntArray) -> float:
