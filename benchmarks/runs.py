@@ -17,6 +17,7 @@ from hybrid_quad.core.validation import topology, violations
 
 ROOT = Path(__file__).resolve().parent.parent
 COLLECTION = ROOT.parent / "shared" / "meshes" / "dev"
+BAD = COLLECTION.parent / "bad"
 JUDGE = ROOT.parent / "shared" / "judge" / "judge_quads.py"
 SETTINGS = {"sharp": ("--sharp-angle", "40"), "no_sharp": ("--no-sharp",)}
 
@@ -30,11 +31,13 @@ class Run:
     quads: int
     setting: str
     arguments: tuple[str, ...] = ()  # more of the command line's
+    variant: str = "default"  # see variants.py
+    may_refuse: bool = False  # the model is no clean surface: a good reason will do
 
     @property
     def name(self) -> str:
         """Unique among the runs of a sweep; also the name of its files."""
-        return f"{self.model}_{self.quads}_{self.setting}"
+        return f"{self.model}_{self.quads}_{self.setting}" + ("" if self.variant == "default" else f"_{self.variant}")
 
 
 @dataclass(frozen=True)
@@ -51,8 +54,8 @@ class Limits:
 class Outcome:
     """What came of a run.
 
-    `status` is "valid", "invalid", "timeout" (had to be killed), "crash", or the report's where no mesh was made;
-    `failed` names the checks that failed, of the judge and of our own validation.
+    `status` is "valid", "refused" (a model that may be, with a reason), "invalid", "timeout" (had to be killed), "crash",
+    or the report's where no mesh was made; `failed` names the checks that failed, of the judge and of our own validation.
     """
 
     model: str
@@ -66,6 +69,12 @@ class Outcome:
     peak_mb: float = 0.0
     report: dict[str, Any] = field(default_factory=dict)
     judgement: dict[str, Any] = field(default_factory=dict)
+    variant: str = "default"
+
+    @property
+    def is_good(self) -> bool:
+        """Valid, or refused as it should be."""
+        return self.status in ("valid", "refused")
 
     def as_json(self) -> dict[str, Any]:
         """For a line of results."""
@@ -96,18 +105,27 @@ def run_and_judge(
     # The run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
     measured = _measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)
-    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message)
+    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
         outcome.report = json.loads(report.read_text())
     if measured.status != "ok":
         if measured.status == "failed":
             outcome.status = outcome.report.get("status", "crash")
+            if run.may_refuse and _is_refusal(outcome.report):
+                outcome.status = "refused"
         return outcome
-    outcome.failed = _own_checks(run.path, out)
+    reference = run.path
+    if outcome.report.get("defects"):
+        reference = folder / f"{run.name}.repaired.obj"
+        outcome.failed = _repair(run.path, reference, limits.judge_seconds)
+    outcome.failed += _own_checks(reference, out)
     if judge is not None and judge.exists():
-        outcome.judgement = _judge(judge, run, out, folder / f"{run.name}.judge.json", limits.judge_seconds)
+        judgement = folder / f"{run.name}.judge.json"
+        outcome.judgement = _judge(judge, run.quads, reference, out, judgement, limits.judge_seconds)
         outcome.failed += outcome.judgement.get("failed", [])
+    if reference != run.path and not outcome.failed:
+        reference.unlink(missing_ok=True)
     outcome.status = "invalid" if outcome.failed else "valid"
     if not keep_meshes:
         out.unlink(missing_ok=True)
@@ -153,28 +171,40 @@ def _measure(command: list[str], seconds: float, memory_mb: int) -> _Measured:
     return _Measured(status, message[-2000:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
+_WHOLE_MESH = {"empty_mesh", "no_area", "malformed_faces", "coordinates_too_coarse"}  # no element of it is at fault
+
+
+def _is_refusal(report: dict[str, Any]) -> bool:
+    """Whether a report says why there is no result: a code, a sentence and the elements; or an unreadable file's line."""
+    if report.get("status") == "unreadable_file":
+        return bool(report.get("message"))
+    if report.get("status") != "input_error" or not str(report.get("message", "")).endswith("."):
+        return False
+    return bool(report.get("elements")) or report.get("code") in _WHOLE_MESH
+
+
+def _repair(source: Path, target: Path, seconds: float) -> list[str]:
+    """Writes the surface that the result stands for, where the input is dirty."""
+    command = [sys.executable, str(Path(__file__).with_name("repaired.py")), str(source), str(target)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
+    if not target.exists():
+        return ["own: no repaired mesh: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]
+    return ["own: the repair changed the area"] if done.returncode else []
+
+
 def _own_checks(source: Path, result: Path) -> list[str]:
     vertices, polygons = read_mesh(result)
     if (polygons.sizes != 4).any():
         return ["own: not only quads"]
     failed = [f"own: {sentence}" for sentence in violations(vertices, polygons.vertices.reshape(-1, 4))]
-    # STL files and files split at seams have no connectivity to compare with.
+    # STL files have no connectivity to compare with.
     if not failed and source.suffix == ".obj" and topology(read_mesh(source)[1]) != topology(polygons):
         failed.append("own: topology differs")
     return failed
 
 
-def _judge(judge: Path, run: Run, result: Path, report: Path, seconds: float) -> dict[str, Any]:
-    command = [
-        sys.executable,
-        str(judge),
-        str(run.path),
-        str(result),
-        "--target",
-        str(run.quads),
-        "--json",
-        str(report),
-    ]
+def _judge(judge: Path, quads: int, source: Path, result: Path, report: Path, seconds: float) -> dict[str, Any]:
+    command = [sys.executable, str(judge), str(source), str(result), "--target", str(quads), "--json", str(report)]
     report.unlink(missing_ok=True)
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)

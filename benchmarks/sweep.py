@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Remeshes many models at many counts, judges each result, and writes a table (CSV and Markdown).
+"""Remeshes many models at many counts, with many wishes, judges each result, and writes a table (CSV and Markdown).
 
 Every run has a process of its own, with limits of time and memory. What is done is kept in results.jsonl: a sweep that
 was interrupted goes on where it stopped; results of another build of the library are made again.
@@ -12,17 +12,21 @@ import csv
 import hashlib
 import json
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import replace
 from pathlib import Path
 
 import table
 from hybrid_quad.core import native
-from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+from runs import BAD, COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+from variants import VARIANTS, arguments_of
+
+SECONDS_FOR_10000 = 60.0  # quads; also the least that a run may take
 
 
 def main() -> int:
-    """Runs what is missing and writes the table; exit status 1 if a run is not valid."""
+    """Runs what is missing and writes the table; exit status 1 if a run is neither valid nor refused as it should be."""
     arguments = _parser().parse_args()
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
@@ -34,11 +38,16 @@ def main() -> int:
     done = {} if arguments.fresh else read_results(out / "results.jsonl", build)
     missing = [run for run in runs if run.name not in done]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
-    limits = Limits(seconds=arguments.time_limit, memory_mb=arguments.memory_mb)
+
+    def limits(run: Run) -> Limits:
+        seconds = arguments.time_limit or max(1.0, run.quads / 10000) * SECONDS_FOR_10000
+        return Limits(seconds=seconds, memory_mb=arguments.memory_mb)
+
     judge = None if arguments.no_judge else arguments.judge
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {
-            pool.submit(lambda run: (run, run_and_judge(run, out, limits, judge)), run) for run in missing
+            pool.submit(lambda run: (run, run_and_judge(_with_wishes(run, out), out, limits(run), judge)), run)
+            for run in missing
         }
         finished = 0
         try:
@@ -59,7 +68,7 @@ def main() -> int:
     (out / "sweep.md").write_text(table.as_markdown(outcomes))
     print("\n".join(table.summary(outcomes)))
     print(f"tables: {out / 'sweep.csv'}, {out / 'sweep.md'}")
-    return 0 if all(outcome.status == "valid" for outcome in outcomes) else 1
+    return 0 if all(outcome.is_good for outcome in outcomes) else 1
 
 
 def _line(run: Run, outcome: Outcome) -> str:
@@ -72,14 +81,23 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", type=Path, help="mesh files instead of a collection")
     parser.add_argument(
-        "--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)"
+        "--models",
+        nargs="+",
+        type=Path,
+        default=[COLLECTION, BAD],
+        metavar="DIR",
+        help="folders with an index.csv (default: the clean models and the bad ones)",
     )
     parser.add_argument("--only", nargs="+", metavar="NAME", help="only models whose name contains one of these")
-    parser.add_argument("--quads", nargs="+", type=int, default=[500, 2000, 8000], metavar="N")
+    parser.add_argument("--quads", nargs="+", type=int, default=[100, 500, 2000, 8000, 30000], metavar="N")
     parser.add_argument("--settings", nargs="+", choices=list(SETTINGS), default=list(SETTINGS))
+    parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=list(VARIANTS))
+    parser.add_argument("--clean-only", action="store_true", help="only models that are manifold surfaces")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "sweep")
     parser.add_argument("--jobs", type=int, default=1, help="runs at once (default 1: honest timings)")
-    parser.add_argument("--time-limit", type=float, default=Limits.seconds, metavar="SECONDS")
+    parser.add_argument(
+        "--time-limit", type=float, metavar="SECONDS", help="of a run (default: 60 s for 10000 quads, at least 60 s)"
+    )
     parser.add_argument("--memory-mb", type=int, default=Limits.memory_mb)
     parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")
     parser.add_argument("--no-judge", action="store_true", help="only our own validation")
@@ -88,24 +106,34 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _runs(arguments: argparse.Namespace) -> Iterator[Run]:
-    files: Iterable[Path] = arguments.files or _manifold_models(arguments.models)
-    for path in files:
+    for path, is_clean in _models(arguments):
         if arguments.only and not any(part in path.stem for part in arguments.only):
+            continue
+        if arguments.clean_only and not is_clean:
             continue
         for quads in arguments.quads:
             for setting in arguments.settings:
-                yield Run(path.stem, path, quads, setting)
+                for variant in arguments.variants:
+                    yield Run(path.stem, path, quads, setting, variant=variant, may_refuse=not is_clean)
 
 
-def _manifold_models(folder: Path) -> Iterator[Path]:
-    index = folder / "index.csv"
-    if not index.exists():
-        yield from sorted(folder.glob("*.obj"))
+def _with_wishes(run: Run, folder: Path) -> Run:
+    return replace(run, arguments=arguments_of(run.variant, run.path, folder))
+
+
+def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool]]:
+    """Files, and whether each is a manifold surface that must not be refused."""
+    if arguments.files:
+        yield from ((path, True) for path in arguments.files)
         return
-    with index.open() as file:
-        for row in csv.DictReader(file):
-            if row["edge_mf"] == row["vert_mf"] == "y":
-                yield folder / f"{row['name']}.obj"
+    for folder in arguments.models:
+        index = folder / "index.csv"
+        if not index.exists():
+            yield from ((path, True) for path in sorted(folder.glob("*.obj")))
+            continue
+        with index.open() as file:
+            for row in csv.DictReader(file):
+                yield folder / f"{row['name']}.obj", row.get("edge_mf") == row.get("vert_mf") == "y"
 
 
 def build_id() -> str:

@@ -42,6 +42,7 @@ Column = tuple[str, str, Callable[[Outcome], Any]]
 COLUMNS: Sequence[Column] = (
     ("model", "", lambda o: o.model),
     ("setting", "", lambda o: o.setting),
+    ("variant", "", lambda o: o.variant),
     ("asked", "d", lambda o: o.quads),
     ("quads", "d", lambda o: o.report.get("quads")),
     ("valid", "", lambda o: "yes" if o.status == "valid" else o.status),
@@ -86,7 +87,11 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
     valid = sum(outcome.status == "valid" for outcome in outcomes)
     lines = [f"{valid} of {len(outcomes)} runs are valid."]
     others = Counter(outcome.status for outcome in outcomes if outcome.status != "valid")
+    refused = Counter(
+        str(outcome.report.get("code") or "unreadable") for outcome in outcomes if outcome.status == "refused"
+    )
     lines += [f"- {status}: {count}" for status, count in others.most_common()]
+    lines += [f"  - for {code}: {count}" for code, count in refused.most_common()]
     checks = Counter(check.split(":")[0] for outcome in outcomes for check in outcome.failed)
     lines += [f"- failed check {check}: {count}" for check, count in checks.most_common()]
     counted = [o for o in outcomes if o.quads >= 1000 and o.report.get("quads")]

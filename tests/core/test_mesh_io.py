@@ -3,6 +3,7 @@ import struct
 import numpy as np
 import pytest
 
+from fuzz.fuzz_readers import damaged, verdict_on
 from hybrid_quad.core import mesh_io
 from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, read_polylines, write_mesh
 from support import surfaces
@@ -211,3 +212,19 @@ def test_files_without_lines_say_where(tmp_path, content, line):
     path.write_text(content)
     with pytest.raises(MeshFileError, match=line):
         read_polylines(path)
+
+
+def test_a_ply_file_that_ends_in_its_header_is_refused(tmp_path):
+    path = tmp_path / "cut.ply"
+    path.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+    with pytest.raises(MeshFileError, match=r"cut\.ply.*header"):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize("first", range(0, 400, 50))
+def test_damaged_files_are_read_or_refused(tmp_path, first):
+    for seed in range(first, first + 50):
+        suffix, data = damaged(seed)
+        path = tmp_path / f"damaged{suffix}"
+        path.write_bytes(data)
+        assert verdict_on(path) in ("read", "refused"), seed

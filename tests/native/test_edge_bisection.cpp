@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 #include "hybrid_quad/mesh/edge_bisection.h"
@@ -53,6 +55,28 @@ TEST(EdgeBisection, HandsMarksOnToTheParts) {
     if (v != mesh.from(h) && v != mesh.to(h)) {
       EXPECT_EQ(ends.count(v), 2u);
     }
+}
+
+TEST(EdgeBisection, NoTwoEdgesKeepBothEndsInCommon) {
+  // Two triangles on the same three vertices, joined along two sides and open at the third: two edges, one pair of ends.
+  const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const TriangleMesh pocket(positions, {{0, 1, 2}, {0, 2, 1}}, {-1, 4, 3, 2, 1, -1});
+  const BisectedMesh halved = bisect_long_edges(pocket, 10, {});
+  EXPECT_EQ(halved.mesh.euler_characteristic(), pocket.euler_characteristic());
+  std::vector<std::array<int, 2>> ends;
+  for (int h = 0; h < halved.mesh.halfedge_count(); ++h)
+    if (halved.mesh.opposite(h) < h)
+      ends.push_back({std::min(halved.mesh.from(h), halved.mesh.to(h)), std::max(halved.mesh.from(h), halved.mesh.to(h))});
+  std::sort(ends.begin(), ends.end());
+  EXPECT_EQ(std::adjacent_find(ends.begin(), ends.end()), ends.end());
+}
+
+TEST(EdgeBisection, ThinSurfacesAreNotCutIntoTooManyPieces) {
+  const TriangleMesh ribbon = test::flat_grid(1, 1, 1.0, 1e-6);
+  EXPECT_EQ(affordable_length(ribbon, 0.1, 1000), 0.1);
+  const double length = affordable_length(ribbon, 1e-6, 1000);
+  EXPECT_GT(length, 1e-3);
+  EXPECT_LT(length, 1e-2);
 }
 
 }  // namespace

@@ -215,6 +215,42 @@ def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more)
     assert set(tmp_path.iterdir()) == files
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder in which nobody may make files")
+@pytest.mark.parametrize("options", [[], ["--report", "/proc/report.json"]], ids=["mesh", "report"])
+def test_a_place_where_no_file_can_be_made(tmp_path, torus, capfd, options):
+    if options:
+        unchanged(
+            tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", *options], exit_codes.WRONG_USAGE
+        )
+    else:
+        assert main(["remesh", torus, "/proc/out.obj", "--quads", "100"]) == exit_codes.WRONG_USAGE
+    assert "/proc/" in capfd.readouterr().err
+
+
+@pytest.fixture
+def tiny_disk(tmp_path):
+    """A file system of 32 kB, full with what is on it."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=32k", "tmpfs", folder], capture_output=True, check=False
+    )
+    if mounted.returncode:
+        pytest.skip("mounting is not allowed here")
+    yield folder
+    subprocess.run(["umount", folder], check=True)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="tmpfs")
+def test_a_full_disk_leaves_the_old_result(tmp_path, torus, capfd, tiny_disk):
+    out = tiny_disk / "out.obj"
+    out.write_text("old result")
+    assert main(["remesh", torus, str(out), "--quads", "2000", "--quiet"]) == exit_codes.WRONG_USAGE
+    assert "No space left" in capfd.readouterr().err
+    assert out.read_text() == "old result"
+    assert [path.name for path in tiny_disk.iterdir()] == ["out.obj"]
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_a_device_is_not_replaced(tmp_path, torus, capfd):
     arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", "--report", "/dev/full"]

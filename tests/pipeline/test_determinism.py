@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import hybrid_quad
+from hybrid_quad.cli.main import main
+from hybrid_quad.core.mesh_io import write_mesh
 from support import surfaces
 
 TORUS = surfaces.torus(50, 24)
@@ -61,3 +63,41 @@ def test_another_process_gives_the_same_bytes(tmp_path):
 
 def test_a_seed_is_a_seed():
     assert same(hybrid_quad.remesh(*TORUS, quads=300, seed=9), hybrid_quad.remesh(*TORUS, quads=300, seed=9))
+
+
+@pytest.mark.parametrize("variant", ["plain", "wishes"])
+def test_the_command_writes_the_same_bytes_with_any_number_of_threads(tmp_path, variant):
+    vertices, faces = surfaces.quad_box(6)
+    write_mesh(tmp_path / "in.obj", vertices, faces)
+    more = []
+    if variant == "wishes":
+        np.savetxt(tmp_path / "density.txt", 1 + vertices[:, 0])
+        more = [
+            "--density",
+            str(tmp_path / "density.txt"),
+            "--adaptivity",
+            "0.3",
+            "--symmetry",
+            "z",
+            "--symmetry-center",
+            "bounds",
+        ]
+    written = set()
+    for threads in (1, 2, 4):
+        out = tmp_path / f"out{threads}.obj"
+        arguments = ["remesh", str(tmp_path / "in.obj"), str(out), "--quads", "300", "--quiet", *more]
+        assert main([*arguments, "--threads", str(threads)]) == 0
+        written.add(out.read_bytes())
+    assert len(written) == 1
+
+
+def test_wishes_with_other_threads():
+    vertices, faces = TORUS
+    wishes = {
+        "density": np.linspace(0.5, 2, len(vertices)),
+        "guides": np.roll(vertices, 1, axis=1),
+        "chord_error": None,
+    }
+    first = hybrid_quad.remesh(vertices, faces, quads=400, threads=1, **wishes)
+    for threads in (2, 4):
+        assert same(first, hybrid_quad.remesh(vertices, faces, quads=400, threads=threads, **wishes))

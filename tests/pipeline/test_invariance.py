@@ -88,3 +88,56 @@ def test_snapshots_are_in_the_units_of_the_caller():
     lengths = next(s.face_values["target length"] for s in seen if "target length" in s.face_values)
     edge = np.sqrt(4 * np.pi**2 * 0.4 * 1e-6 / QUADS)
     assert edge / 4 < lengths.mean() < 4 * edge
+
+
+def bumpy_torus():
+    """Generic: no two places of it are alike, so that nothing hangs on how a tie is broken."""
+    vertices, faces = surfaces.torus(36, 18)
+    bumps = np.random.default_rng(5).normal(size=(6, 3))
+    return vertices * (1 + 0.04 * np.sin(vertices @ bumps.T + bumps[:, 0]).sum(axis=1, keepdims=True)), faces
+
+
+def rotation(seed):
+    turned, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return turned * np.sign(np.linalg.det(turned))
+
+
+def other_order(vertices, faces, seed):
+    """The same surface with its vertices and faces in another order, each face beginning where it likes."""
+    random = np.random.default_rng(seed)
+    order = random.permutation(len(vertices))
+    place = np.argsort(order)
+    turned = np.stack([np.roll(face, random.integers(3)) for face in faces])
+    return vertices[order], place[turned][random.permutation(len(faces))]
+
+
+def distance_between(one, two):
+    """Largest distance from a vertex of one to the nearest of the other."""
+    gaps = np.linalg.norm(one[:, None] - two[None], axis=2)
+    return max(gaps.min(axis=0).max(), gaps.min(axis=1).max())
+
+
+@pytest.fixture(scope="module")
+def usual_bumpy():
+    return hybrid_quad.remesh(*bumpy_torus(), quads=QUADS)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_rigid_motion_moves_the_result_along(usual_bumpy, seed):
+    vertices, faces = bumpy_torus()
+    turn, shift = rotation(seed), np.array([3.0, -2.0, 0.7])
+    result = hybrid_quad.remesh(vertices @ turn.T + shift, faces, quads=QUADS)
+    assert topology(result.quads) == topology(usual_bumpy.quads)
+    assert len(result.quads) == len(usual_bumpy.quads)
+    assert distance_between((result.vertices - shift) @ turn, usual_bumpy.vertices) < 1e-6
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_order_of_vertices_and_faces_makes_no_better_or_worse_mesh(usual_bumpy, seed):
+    # Not the same one yet: the working surface's edges are taken in the order of the input's.
+    result = hybrid_quad.remesh(*other_order(*bumpy_torus(), seed), quads=QUADS)
+    assert violations(result.vertices, result.quads) == []
+    assert topology(result.quads) == topology(usual_bumpy.quads)
+    assert abs(len(result.quads) / len(usual_bumpy.quads) - 1) < 0.1
+    assert abs(result.report["irregular_vertices"] - usual_bumpy.report["irregular_vertices"]) <= 4
+    assert result.report["hausdorff_percent"] < 1.5 * usual_bumpy.report["hausdorff_percent"] + 0.1

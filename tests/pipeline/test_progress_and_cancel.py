@@ -51,6 +51,18 @@ def test_a_request_to_stop_is_answered_within_a_second(after):
     assert time.monotonic() - begin < after + 1.5
 
 
+def test_a_request_to_stop_at_any_poll_is_answered_at_once():
+    """Stops at twenty random polls of a run; the seconds between two polls are how long an answer may take."""
+    mesh = surfaces.together(surfaces.torus(60, 30), surfaces.box(10), surfaces.wavy_grid(20))
+    polls = []
+    hybrid_quad.remesh(*mesh, quads=1500, cancel=lambda: polls.append(time.monotonic()))
+    assert np.diff(polls).max() < 1.0
+    for stop in np.random.default_rng(3).integers(0, len(polls) // 2, 20):
+        count = iter(range(10**6))
+        with pytest.raises(hybrid_quad.Cancelled):
+            hybrid_quad.remesh(*mesh, quads=1500, cancel=lambda count=count, stop=stop: next(count) >= stop)
+
+
 @pytest.mark.slow
 def test_twenty_requests_at_random_moments_of_a_long_run_are_answered_within_a_second():
     mesh = surfaces.torus(270, 130)  # 70,200 triangles

@@ -6,13 +6,16 @@ import sys
 
 import pytest
 
+from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.validation import topology
 from support import surfaces
 
 pytest.importorskip("resource")
 
 
-def sweep(root, out, *arguments):
+def sweep(root, out, *arguments, variants=("default",)):
     command = [sys.executable, root / "benchmarks" / "sweep.py", "--out", out, "--no-judge", *map(str, arguments)]
+    command += ["--variants", *variants]
     return subprocess.run(command, capture_output=True, text=True, timeout=200, check=False)
 
 
@@ -54,3 +57,40 @@ def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 150)
     assert large.returncode == 1
     assert rows(tmp_path / "large")[0]["valid"] == "memory_limit"
+
+
+def test_a_fixed_part_of_the_whole_sweep(root, models, tmp_path):
+    """Every variant on a clean and a dirty model; dirty results are held against the repaired surface."""
+    out = tmp_path / "out"
+    variants = ("default", "field", "sizes", "features")
+    files = [models / "oded_cube.obj", models / "c3d_suzanne.obj"]
+    done = sweep(root, out, *files, "--quads", 100, 500, "--settings", "sharp", variants=variants)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "16 of 16 runs are valid" in done.stdout
+    assert {row["variant"] for row in rows(out)} == set(variants)
+
+
+def test_dirty_models_may_be_refused_and_clean_ones_may_not(root, tmp_path):
+    collection = tmp_path / "collection"
+    collection.mkdir()
+    obj(collection / "moebius.obj", *surfaces.moebius())
+    obj(collection / "strip.obj", *surfaces.moebius(20, 2))
+    (collection / "index.csv").write_text("name,edge_mf,vert_mf\nmoebius,n,y\nstrip,y,y\n")
+    arguments = ("--models", collection, "--quads", 100, "--settings", "sharp")
+    done = sweep(root, tmp_path / "out", *arguments)
+    assert done.returncode == 1
+    assert [row["valid"] for row in rows(tmp_path / "out")] == ["refused", "input_error"]
+    assert "for non_orientable: 1" in done.stdout
+    assert sweep(root, tmp_path / "more", *arguments, "--only", "moebius").returncode == 0
+
+
+def test_the_repaired_surface_tells_slits_and_sheets_apart(root, tmp_path):
+    vertices, faces = surfaces.sphere(3)
+    fin = [faces[0][0], faces[0][1], len(vertices)]
+    source = obj(tmp_path / "fin.obj", [*vertices, 1.5 * vertices[0]], [*faces, fin])
+    target = tmp_path / "repaired.obj"
+    command = [sys.executable, root / "benchmarks" / "repaired.py", source, target]
+    subprocess.run(command, check=True, timeout=60)
+    points, polygons = read_mesh(target)
+    assert topology(polygons).euler == (1, 2)
+    assert len({tuple(point) for point in points.tolist()}) == len(points)

@@ -85,7 +85,7 @@ def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> Non
     if len(unknown):
         raise InputError(
             "unknown_edge",
-            f"{len(unknown)} of the marked vertex pairs are no edge of any face",
+            f"{len(unknown)} of the marked vertex pairs are no edge of any face.",
             "edge",
             unknown.reshape(-1).tolist(),
         )
@@ -145,5 +145,5 @@ def _as_indices(values: npt.ArrayLike, name: str) -> IntArray:
         raise TypeError(f"{name} must be integers, not {array.dtype}")
     limits = np.iinfo(np.int32)
     if array.min() < limits.min or array.max() > limits.max:
-        raise InputError("index_out_of_range", f"{name} hold an index that no mesh of this size has")
+        raise InputError("index_out_of_range", f"{name} hold an index that no mesh of this size has.")
     return np.ascontiguousarray(array, dtype=np.int32)

@@ -341,9 +341,12 @@ def _points_of_tokens(tokens: list[str]) -> FloatArray:
 
 
 def _as_int32(values: list[int]) -> IntArray:
-    array = np.array(values, dtype=np.int64)
     limits = np.iinfo(np.int32)
-    return np.clip(array, limits.min, limits.max).astype(np.int32)  # beyond the range of any mesh either way
+    low, high = int(limits.min), int(limits.max)  # beyond the range of any mesh either way
+    try:
+        return np.clip(np.array(values, dtype=np.int64), low, high).astype(np.int32)
+    except OverflowError:
+        return np.array([min(max(value, low), high) for value in values], np.int32)
 
 
 def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
@@ -371,6 +374,8 @@ def _read_with_meshio(path: Path) -> tuple[FloatArray, Polygons]:
     import meshio
 
     module = meshio.ply if path.suffix.lower() == ".ply" else meshio.stl
+    if module is meshio.ply:
+        _require_whole_header(path)
     try:
         mesh: Any = module.read(str(path))
     except OSError:
@@ -387,6 +392,13 @@ def _read_with_meshio(path: Path) -> tuple[FloatArray, Polygons]:
     return points, Polygons(
         np.concatenate([part.sizes for part in parts]), np.concatenate([part.vertices for part in parts])
     )
+
+
+def _require_whole_header(path: Path) -> None:
+    """Raises ValueError where a PLY file ends in its header, whose end meshio would look for without end."""
+    with path.open("rb") as file:
+        if not any(line.strip() == b"end_header" for line in file):
+            raise ValueError("no PLY file, or one that ends in its header")
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

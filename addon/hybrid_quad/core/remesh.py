@@ -327,8 +327,8 @@ def _require_enough_length(
     if expected > MOST_QUADS:
         raise InputError(
             "too_many_quads",
-            f"quads of edge length {options.edge_length:g} would be about {expected:.2g} on this surface, "
-            f"more than {MOST_QUADS}",
+            f"Quads of edge length {options.edge_length:g} would be about {expected:.2g} on this surface, "
+            f"more than {MOST_QUADS}.",
         )
 
 

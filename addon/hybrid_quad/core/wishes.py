@@ -64,5 +64,5 @@ def _by_element(
     if not finite.all():
         bad = np.flatnonzero(~finite).tolist()
         kind = "vertex" if of_vertices else "face"
-        raise InputError(f"non_finite_{name}", f"{name} must be finite, and is not at {kind} {bad[0]}", kind, bad)
+        raise InputError(f"non_finite_{name}", f"The {name} must be finite, and are not at {kind} {bad[0]}.", kind, bad)
     return (array, none) if of_vertices else (none, array)

@@ -106,7 +106,7 @@ void FeatureDetector::mark_given_edges() {
     else unknown.insert(unknown.end(), {edge[0], edge[1]});
   }
   if (!unknown.empty())
-    throw InputError("unknown_edge", std::to_string(unknown.size() / 2) + " marked pairs of vertices are no edges of the mesh",
+    throw InputError("unknown_edge", std::to_string(unknown.size() / 2) + " marked pairs of vertices are no edges of the mesh.",
                      "edge", unknown);
 }
 

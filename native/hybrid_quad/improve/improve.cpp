@@ -1,5 +1,7 @@
 #include "hybrid_quad/improve/improve.h"
 
+#include <algorithm>
+
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/mend.h"
@@ -80,6 +82,13 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   return report;
 }
 
+double area_of(const QuadMesh& m) {
+  double sum = 0;
+  for (const auto& q : m.quads)
+    sum += 0.5 * (m.positions[q[2]] - m.positions[q[0]]).cross(m.positions[q[3]] - m.positions[q[1]]).norm();
+  return sum;
+}
+
 }  // namespace
 
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
@@ -105,7 +114,9 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     }
     if (!go_on) break;
   }
-  if (report.flawed_after > report.flawed_before) {
+  // A few quads around something small may slip off it to one side, where they shrink to a point.
+  constexpr double kLeastArea = 0.1;
+  if (report.flawed_after > report.flawed_before || area_of(best) < kLeastArea * std::min(area_of(quads), input.total_area())) {
     report.connectivity_moves = 0;
     report.flawed_after = report.flawed_before;
     report.restored_quads = static_cast<int>(quads.quads.size());

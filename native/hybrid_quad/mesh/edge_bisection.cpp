@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <queue>
+#include <utility>
 
 #include "hybrid_quad/mesh/editable_mesh.h"
 
@@ -37,6 +38,30 @@ std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges,
   return number;
 }
 
+/// Halves edges that have both ends in common with another until there are none: what comes after knows edges by their ends.
+/// Cuts at non-manifold edges leave such edges.
+void split_edges_with_common_ends(EditableMesh& edited) {
+  for (;;) {
+    std::vector<std::pair<std::array<int, 2>, int>> edges;
+    for (int h = 0; h < edited.halfedge_slots(); ++h)
+      if (edited.is_face(h / 3) && edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
+    std::sort(edges.begin(), edges.end());
+    // One at a time of each face: splitting renames half-edges.
+    std::vector<char> is_touched(edited.face_slots(), 0);
+    bool any = false;
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+      if (edges[i].first != edges[i - 1].first) continue;
+      any = true;
+      const int h = edges[i].second, o = edited.opposite(h);
+      if (is_touched[h / 3] || (o >= 0 && is_touched[o / 3])) continue;
+      is_touched[h / 3] = 1;
+      if (o >= 0) is_touched[o / 3] = 1;
+      edited.split_edge(h, 0.5 * (edited.position(edited.from(h)) + edited.position(edited.to(h))));
+    }
+    if (!any) return;
+  }
+}
+
 struct LongEdge {
   double squared_length;
   int halfedge;
@@ -51,13 +76,14 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
                                const std::vector<EdgeSet>& chains) {
   std::vector<Mark> marks;
   EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks));
+  split_edges_with_common_ends(edited);
   std::priority_queue<LongEdge> queue;
   const auto push = [&](int h) {
     const double squared = edited.edge_vector(h).squaredNorm();
     if (squared > longest * longest) queue.push({squared, h});
   };
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (mesh.opposite(h) < h) push(h);
+  for (int h = 0; h < edited.halfedge_slots(); ++h)
+    if (edited.opposite(h) < h) push(h);
   while (!queue.empty()) {
     const LongEdge edge = queue.top();
     queue.pop();
@@ -81,6 +107,16 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
   }
   out.mesh = std::move(compacted.mesh);
   return out;
+}
+
+double affordable_length(const TriangleMesh& mesh, double longest, double most_pieces) {
+  for (;;) {
+    double sum = 0;
+    for (int h = 0; h < mesh.halfedge_count(); ++h)
+      if (mesh.opposite(h) < h && mesh.edge_length(h) > longest) sum += mesh.edge_length(h);
+    if (sum <= 1.01 * most_pieces * longest) return longest;
+    longest = sum / most_pieces;
+  }
 }
 
 }  // namespace hybrid_quad

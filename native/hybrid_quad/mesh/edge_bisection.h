@@ -16,10 +16,14 @@ struct BisectedMesh {
   std::vector<EdgeSet> chains;   ///< the parts of each
 };
 
-/// The same surface with no edge longer than `longest`: edges are halved, longest first (Rivara 1984), so that what is
+/// The same surface with no edge longer than `longest` and no two with the same two ends: edges are halved, longest first (Rivara 1984), so that what is
 /// known at vertices is known everywhere.
 /// \param chains  sets of edges, no edge in two of them, that are marked too but told apart
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
                                const std::vector<EdgeSet>& chains = {});
+
+/// The least length from `longest` on at which halving falls into about `most_pieces` edges, of those that are longer: thin as a
+/// hair, a surface would be cut into as many pieces as its length has widths.
+double affordable_length(const TriangleMesh& mesh, double longest, double most_pieces);
 
 }  // namespace hybrid_quad

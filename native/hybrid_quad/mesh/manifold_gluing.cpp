@@ -138,6 +138,7 @@ void Gluer::glue_crowded_edge(int begin, int end) {
     int first, second;
   };
   out_.non_manifold_edges.push_back({sides_[begin].low, sides_[begin].high});
+  out_.torn_sides += end - begin;
   constexpr int kTooMany = 64;
   if (end - begin > kTooMany) return;
   std::vector<Vector3> direction;
@@ -153,7 +154,9 @@ void Gluer::glue_crowded_edge(int begin, int end) {
   for (const Pair& p : pairs) {
     const int g = sides_[p.first].halfedge, h = sides_[p.second].halfedge;
     if (out_.opposite[g] >= 0 || out_.opposite[h] >= 0) continue;
-    if (sets_.join(g / 3, h / 3, p.disagrees)) glue(g, h);
+    if (!sets_.join(g / 3, h / 3, p.disagrees)) continue;
+    glue(g, h);
+    out_.torn_sides -= 2;
   }
 }
 

@@ -16,6 +16,7 @@ struct ManifoldGluing {
   std::vector<int> source_vertex;     ///< #V: vertex of the input it is a copy of
   std::vector<char> was_flipped;      ///< #F
   std::vector<std::array<int, 2>> non_manifold_edges;
+  int torn_sides = 0;                 ///< of faces, left alone at non-manifold edges
   std::vector<int> non_manifold_vertices;
   std::vector<int> non_orientable_faces;  ///< not empty: the faces of a component without a consistent orientation
 };

@@ -9,6 +9,7 @@
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/mesh_oddities.h"
+#include "hybrid_quad/mesh/negligible_faces.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
 #include "hybrid_quad/mesh/t_junctions.h"
 #include "hybrid_quad/mesh/vertex_spread.h"
@@ -22,6 +23,11 @@ constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
+constexpr double kLeastShare = 1e-10;    ///< of the area; parts with less are specks, a hundred thousandth as long as the rest
+/// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
+/// cut but a volume's inside. A surface has 1.5 edges a triangle.
+constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
+constexpr double kLeastExtent = 1e-11;   ///< over the distance from the origin: less leaves no bits for the places of quads
 
 /// Builds the mesh step by step; every step notes the defects that it found.
 class MeshBuilder {
@@ -41,7 +47,7 @@ class MeshBuilder {
   bool merge_vertices(const std::vector<int>& target);
   void drop_duplicates();
   BuiltMesh glue();
-  void drop_components_without_area(BuiltMesh& built);
+  void drop_negligible_components(BuiltMesh& built);
 
   void note(const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
     if (!elements.empty()) defects.push_back({code, kind, std::move(elements), true, false, remedy});
@@ -121,6 +127,8 @@ void MeshBuilder::normalize_positions() {
   const Vector3 half = high - centre;
   const double size = half.maxCoeff();
   if (!(size > 0)) refuse("no_area", "All vertices lie at the same place.", "", {});
+  if (size < kLeastExtent * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff())
+    refuse("coordinates_too_coarse", "The mesh is so far from the origin that its coordinates have no digits left for its shape.", "", {});
   const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
   positions_.assign(is_used_.size(), Vector3::Zero());
   for (std::size_t v = 0; v < is_used_.size(); ++v)
@@ -237,6 +245,9 @@ BuiltMesh MeshBuilder::glue() {
   for (int f = 0; f < static_cast<int>(glued.was_flipped.size()); ++f)
     if (glued.was_flipped[f]) flipped.push_back(f);
   for (const auto& e : glued.non_manifold_edges) edge_ends.insert(edge_ends.end(), e.begin(), e.end());
+  const double faces = static_cast<double>(triangles_.size());
+  if (glued.non_manifold_edges.size() > kMostCrowded * faces && glued.torn_sides > kMostTorn * faces)
+    refuse("not_a_surface", "Most edges are in more than two faces, as inside a volume: this is no surface.", "edge", std::move(edge_ends));
   note("flipped_face", "face", polygons_of(flipped), "turned around");
   note("non_manifold_edge", "edge", std::move(edge_ends), "the surface is cut there");
   note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
@@ -250,36 +261,20 @@ BuiltMesh MeshBuilder::glue() {
   return built;
 }
 
-/// Drops components all of whose faces have no area, and puts the vertices back at their places in the input.
-void MeshBuilder::drop_components_without_area(BuiltMesh& built) {
+/// Drops components without area, and those so small that their quads would have none, and puts the vertices back at
+/// their places in the input.
+void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   const TriangleMesh& mesh = built.mesh;
-  std::vector<int> component(mesh.face_count(), -1), stack;
-  std::vector<char> has_area;
-  for (int seed = 0; seed < mesh.face_count(); ++seed) {
-    if (component[seed] >= 0) continue;
-    const int id = static_cast<int>(has_area.size());
-    has_area.push_back(0);
-    component[seed] = id;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const int f = stack.back();
-      stack.pop_back();
-      const auto& t = mesh.face(f);
-      if (!has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]))) has_area[id] = 1;
-      for (int h = 3 * f; h < 3 * f + 3; ++h) {
-        const int o = mesh.opposite(h);
-        if (o < 0 || component[o / 3] >= 0) continue;
-        component[o / 3] = id;
-        stack.push_back(o / 3);
-      }
-    }
-  }
+  const std::vector<Weight> weight = weight_of_faces(mesh, kLeastShare);
+  std::vector<int> tiny;
   BuiltMesh kept;
   std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
   std::vector<Vector3> positions;
   std::vector<std::array<int, 3>> faces;
   for (int f = 0; f < mesh.face_count(); ++f)
-    if (has_area[component[f]]) {
+    if (weight[f] == Weight::kTiny) {
+      tiny.push_back(built.input_face[f]);
+    } else if (weight[f] == Weight::kCounts) {
       new_face[f] = static_cast<int>(kept.input_face.size());
       kept.input_face.push_back(built.input_face[f]);
       for (const int v : mesh.face(f)) new_vertex[v] = 0;
@@ -299,6 +294,9 @@ void MeshBuilder::drop_components_without_area(BuiltMesh& built) {
       }
     }
   if (faces.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
+  std::sort(tiny.begin(), tiny.end());
+  tiny.erase(std::unique(tiny.begin(), tiny.end()), tiny.end());
+  note("tiny_component", "face", std::move(tiny), "left out: too small beside the rest for quads with an area");
   kept.mesh = TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
   built = std::move(kept);
 }
@@ -321,7 +319,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   BuiltMesh built = glue();
   context.checkpoint();
-  drop_components_without_area(built);
+  drop_negligible_components(built);
   return built;
 }
 

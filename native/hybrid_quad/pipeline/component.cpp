@@ -85,6 +85,7 @@ class ComponentRemesher {
     prepare();
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
+    result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
     require_sound("improve", violations_of(result_.mesh));
     result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
     const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);
@@ -101,6 +102,12 @@ class ComponentRemesher {
                                    context_.in_stage("working surface", 0, 0.2));
     });
     result_.working_faces = surface_.mesh.face_count();
+    // Shapes that it did not reach may still do: what is assembled is checked against the input again.
+    for (const std::string& violation : violations_of(surface_, mesh_, plan_.features)) {
+      ++result_.repairs.broken_promises;
+      result_.warnings.push_back("the working surface is not as promised: " + violation);
+      break;
+    }
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
   }
 
@@ -140,6 +147,7 @@ class ComponentRemesher {
       Extraction current = extract_by_any_means(unit, search.next());
       double count = static_cast<double>(current.mesh.quads.size());
       result_.extracted_quads += count;
+      result_.work += result_.working_faces;
       // What is as far off as that needs no improving, unless it is all there is.
       if (search.error(count) < kHopeless || (last && !any)) {
         if (options_.improve) improve(index, current);
@@ -227,6 +235,7 @@ class ComponentRemesher {
     RegularQuads regular = clock_.measure("regular quads", [&] {
       return extract_regular_quads(surface_, frames, out.param, context_.in_stage("regular quads", 0.7, 0.76));
     });
+    require_sound("regular quads", violations_of(regular));
     SingularPatches singular = clock_.measure("singular patches", [&] {
       return fill_singular_patches(surface_, frames, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
     });
@@ -357,16 +366,21 @@ double badness(const ComponentResult& result) {
 }  // namespace
 
 ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
-                                 const RunContext& context) {
+                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
+                                 StageClock& clock, const RunContext& context) {
   ComponentResult best;
   std::string broken;
   bool any = false;
-  double begin = 0, end = 0.9, extracted = 0;
+  double begin = 0, end = 0.9, extracted = 0, first_work = 0;
+  const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
     if (any && settings.quads_factor > kFewMore && best.flawed_quads == 0) break;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
+    if (any && budget.left - settings.quads_factor * first_work < reserve) {
+      best.gave_up = best.flawed_quads > 0;
+      break;
+    }
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
       const bool refined = !limits.empty() || settings.quads_factor != 1;
@@ -378,6 +392,8 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;
+      if (any) budget.left -= result.work;
+      else first_work = result.work;
       if (!any || badness(result) < badness(best))
         best = std::move(result);
       else

@@ -29,13 +29,23 @@ struct ComponentResult {
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
   int missed_counts = 0;  ///< quad edges too many or too few on curves that were to get a certain number
   double extracted_quads = 0;  ///< in all tries of the pass
+  double work = 0;       ///< faces of the working surface, for each of these tries
+  bool gave_up = false;  ///< quads are flawed, and there was no work left for another pass
   int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;
 };
 
+/// What all passes beyond the components' first may take, in faces of working surfaces, counted for each try at an extraction.
+/// A time would make the result depend on the machine.
+struct WorkBudget {
+  double left = 0;
+};
+
 /// Remeshes one connected component (paper 3 and 4, then improvement).
 /// \param whole  the surface that the component is part of
+/// \param budget  what passes beyond the first take is taken from it, at most half of what is left
 ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const HardGuides& guides, const RemeshOptions& options, StageClock& clock, const RunContext& context);
+                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
+                                 const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -10,22 +10,22 @@ namespace {
 
 std::array<int, 2> sorted_pair(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-std::string name_of(std::size_t i) { return "curve " + std::to_string(i) + " of curve_counts"; }
+std::string name_of(std::size_t i) { return "Curve " + std::to_string(i) + " of curve_counts"; }
 
 void check_path(const CurveCount& curve, std::size_t i, int vertex_count) {
   if (curve.count < 1)
-    throw InputError("curve_count_too_small", name_of(i) + " is to get " + std::to_string(curve.count) + " quads");
+    throw InputError("curve_count_too_small", name_of(i) + " is to get " + std::to_string(curve.count) + " quads.", "vertex", curve.vertices);
   for (const int v : curve.vertices)
     if (v < 0 || v >= vertex_count)
-      throw InputError("index_out_of_range", name_of(i) + " has an unknown vertex " + std::to_string(v));
+      throw InputError("index_out_of_range", name_of(i) + " has an unknown vertex " + std::to_string(v) + ".", "vertex", {v});
   std::vector<int> sorted(curve.vertices.begin(), curve.vertices.end());
   const bool closed = sorted.size() > 3 && sorted.front() == sorted.back();
   if (closed) sorted.pop_back();
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (sorted.size() < 2 || twice != sorted.end())
-    throw InputError("curve_not_simple", name_of(i) + " has no edge, or passes a vertex twice", "vertex",
-                     twice == sorted.end() ? std::vector<int>{} : std::vector<int>{*twice});
+    throw InputError("curve_not_simple", name_of(i) + " has no edge, or passes a vertex twice.", "vertex",
+                     twice == sorted.end() ? curve.vertices : std::vector<int>{*twice});
 }
 
 /// Number of edges of each curve.
@@ -45,7 +45,7 @@ void check_curve_counts(const PolygonSoup& soup, const std::vector<CurveCount>& 
     const std::vector<int>& path = asked[i].vertices;
     for (std::size_t k = 0; k + 1 < path.size(); ++k)
       if (!curve_of.emplace(sorted_pair(path[k], path[k + 1]), static_cast<int>(i)).second)
-        throw InputError("overlapping_curves", name_of(i) + " has an edge that is listed already", "edge", {path[k], path[k + 1]});
+        throw InputError("overlapping_curves", name_of(i) + " has an edge that is listed already.", "edge", {path[k], path[k + 1]});
   }
   std::map<std::array<int, 2>, int> missing = curve_of;
   std::size_t first = 0;
@@ -57,7 +57,7 @@ void check_curve_counts(const PolygonSoup& soup, const std::vector<CurveCount>& 
   if (missing.empty()) return;
   const auto& [pair, curve] = *missing.begin();
   throw InputError("unknown_edge", name_of(curve) + ": vertices " + std::to_string(pair[0]) + " and " + std::to_string(pair[1]) +
-                                       " are no edge of the mesh", "edge", {pair[0], pair[1]});
+                                       " are no edge of the mesh.", "edge", {pair[0], pair[1]});
 }
 
 std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<CurveCount>& asked) {

@@ -67,6 +67,9 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
   return out;
 }
 
+/// Of a WorkBudget: about half a minute, and another for ten thousand quads.
+constexpr double kExtraWork = 5e5, kExtraWorkPerQuad = 50;
+
 /// Marked edges of the whole mesh in a component.
 MarkedEdges marked_in(const Component& component, const RemeshDomain& domain) {
   MarkedEdges out;
@@ -206,6 +209,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   split_polychords += other.split_polychords;
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
+  opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;
 }
@@ -226,6 +230,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   report.defects = as_given.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
+  if (context.on_snapshot) context.on_snapshot(snapshot_of(as_given.mesh));
 
   if (options.symmetry.planes != 0 || options.symmetry.detect)
     report.symmetry = clock.measure("symmetry", [&] {
@@ -272,6 +277,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   });
 
   const SurfaceIndex whole(built.mesh, {});
+  WorkBudget budget{kExtraWork + kExtraWorkPerQuad * wanted};
   std::vector<ComponentResult> parts;
   GuidedEdges guided;
   double done = 0, singular_area = 0, combinatorial_area = 0;
@@ -280,11 +286,12 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], whole, wishes[i], guides, domain.options, clock, part_context));
+    parts.push_back(remesh_component(plans[i], whole, wishes[i], guides, domain.options, budget, clock, part_context));
     counts.record(plans[i], on_curves_of(plans[i], parts.back()));
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex)
       input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
+    input_vertex.resize(plans[i].mesh.vertex_count(), -1);  // what halving long edges added; corners in folds, now and then
     append(result, whole_of(parts.back(), components[i].mesh, marked[i].ends, domain.options), parts.back(), input_vertex, images, guided);
     singular_area += parts.back().singular_area;
     combinatorial_area += parts.back().combinatorial_area;
@@ -300,8 +307,11 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
     report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
-  if (report.flawed_quads > 0)
-    report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area");
+  if (report.flawed_quads > 0) {
+    const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
+    report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area" +
+                              (gave_up ? "; more tries would have taken too long" : ""));
+  }
   report.curve_counts = counts.records();
   for (std::string& warning : warnings_of(report.curve_counts)) report.warnings.push_back(std::move(warning));
   if (images > 1) {

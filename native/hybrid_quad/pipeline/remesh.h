@@ -82,6 +82,7 @@ struct RepairRecord {
   int split_polychords = 0;      ///< strips doubled to make room
   int opened_straight_quads = 0; ///< quads with three sides on one feature
   int mended_places = 0;         ///< changes that only flawed quads called for
+  int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
 
   RepairRecord& operator+=(const RepairRecord& other);

@@ -128,11 +128,14 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
   constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
+  constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
   context.checkpoint();
   ComponentPlan plan;
   plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / least_quads(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
-  const double longest = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
+  const double wanted = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
+  const double longest =
+      affordable_length(mesh, wanted, kPieces + kPiecesPerQuad * mesh.total_area() / (plan.length * plan.length));
   std::vector<EdgeSet> chain_edges;
   for (const CountedChain& chain : chains) chain_edges.push_back(chain.edges);
   BisectedMesh fine = bisect_long_edges(mesh, longest, marked.ends, chain_edges);

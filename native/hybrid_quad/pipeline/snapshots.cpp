@@ -6,12 +6,17 @@ namespace {
 
 const std::string kTargetLength = "target length";
 
-Snapshot surface_snapshot(const TriangleMesh& mesh, const FeatureGraph& features, const std::string& stage) {
+Snapshot triangles_snapshot(const TriangleMesh& mesh, const std::string& stage) {
   Snapshot s;
   s.stage = stage;
   s.points = mesh.positions();
   s.face_sizes.assign(mesh.face_count(), 3);
   for (const auto& face : mesh.faces()) s.face_vertices.insert(s.face_vertices.end(), face.begin(), face.end());
+  return s;
+}
+
+Snapshot surface_snapshot(const TriangleMesh& mesh, const FeatureGraph& features, const std::string& stage) {
+  Snapshot s = triangles_snapshot(mesh, stage);
   for (const FeatureCurve& curve : features.curves)
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) s.lines.push_back({curve.vertices[i], curve.vertices[i + 1]});
   s.vertex_values["corner"].assign(features.is_corner.begin(), features.is_corner.end());
@@ -25,6 +30,15 @@ void add_vectors(Snapshot& s, const std::string& name, const std::vector<Vector3
 }
 
 }  // namespace
+
+Snapshot snapshot_of(const TriangleMesh& mesh) {
+  Snapshot s = triangles_snapshot(mesh, "mesh");
+  for (int side = 0; side < 3; ++side) {
+    auto& values = s.face_values["opposite of side " + std::to_string(side)];
+    for (int f = 0; f < mesh.face_count(); ++f) values.push_back(mesh.opposite(3 * f + side));
+  }
+  return s;
+}
 
 Snapshot snapshot_of(const TriangleMesh& mesh, const FeatureGraph& features) {
   return surface_snapshot(mesh, features, "features");

@@ -6,6 +6,9 @@
 
 namespace hybrid_quad {
 
+/// The input as it was repaired, before anything is cut or moved. "opposite of side 0" to 2 at faces: 3 times the face across
+/// plus its side there, -1 at the boundary (vertices alone do not say it where a cut has both ends in common with an edge).
+Snapshot snapshot_of(const TriangleMesh& mesh);
 Snapshot snapshot_of(const TriangleMesh& mesh, const FeatureGraph& features);
 Snapshot snapshot_of(const WorkingSurface& surface);
 /// "u direction", "v direction" as face vectors, "cone index" at vertices

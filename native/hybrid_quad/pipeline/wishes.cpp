@@ -33,12 +33,12 @@ void check_values(const std::vector<Value>& values, std::size_t count, const std
   if (values.empty()) return;
   if (values.size() != count)
     throw InputError("wrong_count", std::to_string(values.size()) + " values of " + what + " for " + std::to_string(count) +
-                                        " elements (" + kind + ")");
+                                        " elements (" + kind + ").");
   std::vector<int> bad;
   for (std::size_t i = 0; i < count; ++i)
     if (!is_finite(values[i])) bad.push_back(static_cast<int>(i));
   if (!bad.empty())
-    throw InputError("non_finite_" + what, what + " is not finite at " + kind + " " + std::to_string(bad.front()), kind, bad);
+    throw InputError("non_finite_" + what, "The " + what + " is not finite at " + kind + " " + std::to_string(bad.front()) + ".", kind, bad);
 }
 
 void check_frames(const std::vector<Frame>& frames, const std::string& kind) {
@@ -46,8 +46,8 @@ void check_frames(const std::vector<Frame>& frames, const std::string& kind) {
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (!is_free(frames[i]) && !(stretch_ratio(frames[i]) <= kMostFrameStretch)) bad.push_back(static_cast<int>(i));
   if (!bad.empty())
-    throw InputError("degenerate_frame", "the two vectors of the frame at " + kind + " " + std::to_string(bad.front()) +
-                                             " are (nearly) parallel, or one is far longer", kind, bad);
+    throw InputError("degenerate_frame", "The two vectors of the frame at " + kind + " " + std::to_string(bad.front()) +
+                                             " are (nearly) parallel, or one is far longer.", kind, bad);
 }
 
 /// By vertices and by polygons, at the corners of a component's triangles; a polygon's own value goes first.
@@ -138,7 +138,7 @@ void check_wishes(const PolygonSoup& soup, const RemeshOptions& options) {
     for (const Vector3& p : options.strokes[i].points)
       if (!is_finite(p) && (bad.empty() || bad.back() != static_cast<int>(i))) bad.push_back(static_cast<int>(i));
   if (!bad.empty())
-    throw InputError("non_finite_stroke", "guide " + std::to_string(bad.front()) + " has points that are not finite", "guide", bad);
+    throw InputError("non_finite_stroke", "Guide " + std::to_string(bad.front()) + " has points that are not finite.", "guide", bad);
 }
 
 Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,

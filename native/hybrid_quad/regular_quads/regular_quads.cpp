@@ -76,6 +76,51 @@ bool sides_of_cell(const GridOverlay& overlay, const CellComponents& cells, int 
   return corners == 4 && walked == border_count && inner_halfedges % 2 == 0;
 }
 
+bool is_border(const GridOverlay& overlay, const std::vector<int>& piece_cell, int k) {
+  if (overlay.curve[k] >= 0) return true;
+  const int o = overlay.opposite[k];
+  return overlay.on_isoline[k] && (piece_cell[overlay.piece_of[k]] >= 0 || (o >= 0 && piece_cell[overlay.piece_of[o]] >= 0));
+}
+
+/// Overlay vertices between grid points at which more than two borders of quads and patches end: a side that touches a curve
+/// where the curve's own coordinate has no integer. Seen from its two sides, the chain of a grid edge goes on differently there.
+std::vector<char> find_touching(const GridOverlay& overlay, const std::vector<int>& piece_cell) {
+  std::vector<int> borders(overlay.vertices.size(), 0);
+  for (int k = 0; k < static_cast<int>(overlay.origin.size()); ++k) {
+    if (overlay.opposite[k] > k || !is_border(overlay, piece_cell, k)) continue;
+    ++borders[overlay.origin[k]];
+    ++borders[overlay.target(k)];
+  }
+  std::vector<char> touching(borders.size(), 0);
+  for (std::size_t v = 0; v < borders.size(); ++v) touching[v] = overlay.vertices[v].grid_sign == 0 && borders[v] > 2;
+  return touching;
+}
+
+/// Cells with a side off the curves that touches another border. Without them only curves pass such a vertex.
+std::vector<char> find_touching_cells(const GridOverlay& overlay, const std::vector<int>& piece_cell, std::size_t cell_count) {
+  const std::vector<char> touching = find_touching(overlay, piece_cell);
+  std::vector<char> out(cell_count, 0);
+  for (int k = 0; k < static_cast<int>(overlay.origin.size()); ++k) {
+    const int cell = piece_cell[overlay.piece_of[k]];
+    if (cell < 0 || overlay.curve[k] >= 0 || !overlay.on_isoline[k]) continue;
+    if (touching[overlay.origin[k]] || touching[overlay.target(k)]) out[cell] = 1;
+  }
+  return out;
+}
+
+/// Gives the marked cells to the singular region.
+void release(RegularQuads& quads, const std::vector<char>& is_released) {
+  std::vector<int> new_cell(is_released.size(), -1);
+  int count = 0;
+  for (std::size_t q = 0; q < is_released.size(); ++q) {
+    if (is_released[q]) continue;
+    new_cell[q] = count;
+    quads.side[count++] = quads.side[q];
+  }
+  quads.side.resize(count);
+  for (int& cell : quads.piece_cell) cell = cell < 0 ? -1 : new_cell[cell];
+}
+
 }  // namespace
 
 RegularQuads extract_regular_quads(const WorkingSurface& surface, const FrameField& frames,
@@ -92,6 +137,7 @@ RegularQuads extract_regular_quads(const WorkingSurface& surface, const FrameFie
       out.piece_cell[cells.members[i]] = static_cast<int>(out.side.size());
     out.side.push_back(side);
   }
+  release(out, find_touching_cells(overlay, out.piece_cell, out.side.size()));
   return out;
 }
 
@@ -112,6 +158,9 @@ std::vector<std::string> violations_of(const RegularQuads& quads) {
       sign = s;
     }
   }
+  const std::vector<char> touching = find_touching(overlay, quads.piece_cell);
+  for (std::size_t v = 0; v < touching.size(); ++v)
+    if (touching[v]) out.push_back("more than two borders end at overlay vertex " + std::to_string(v) + ", which is no grid point");
   return out;
 }
 

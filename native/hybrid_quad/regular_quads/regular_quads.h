@@ -28,7 +28,8 @@ int next_border_halfedge(const GridOverlay& overlay, int k, IsInside is_inside) 
   return n;
 }
 
-/// Every cell is a disk with four grid points; sides of neighbouring cells coincide.
+/// Every cell has four grid points of alternating sign; between grid points no more than two borders meet, so that the chain of
+/// a grid edge is the same from both of its sides.
 std::vector<std::string> violations_of(const RegularQuads& quads);
 
 }  // namespace hybrid_quad

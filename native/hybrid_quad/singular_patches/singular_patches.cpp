@@ -53,10 +53,14 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
   FilledPatch out;
   out.region = surface.features.face_region[face];
   out.area = area_of(patch);
-  out.quads = morse_smale_quads(patch, options.persistence, context);
-  // Shapes that an indexed mesh can't hold are mended once the patch is in its place (repair_complex).
-  out.rejected = structural_violations_of(out.quads, patch);
-  if (is_oversized(out.quads, patch)) out.rejected.push_back("more quads than the patch has room for");
+  try {
+    out.quads = morse_smale_quads(patch, options.persistence, context);
+    // Shapes that an indexed mesh can't hold are mended once the patch is in its place (repair_complex).
+    out.rejected = structural_violations_of(out.quads, patch);
+  } catch (const InternalError& error) {
+    out.rejected.push_back(error.what());
+  }
+  if (out.rejected.empty() && is_oversized(out.quads, patch)) out.rejected.push_back("more quads than the patch has room for");
   if (!out.rejected.empty()) {
     out.combinatorial = true;
     out.quads = combinatorial_fill(patch, context);

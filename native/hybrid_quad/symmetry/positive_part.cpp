@@ -127,13 +127,13 @@ class PlaneCut {
   void refuse_if_useless() const {
     const std::string name = std::string(1, "xyz"[axis_]) + " = 0";
     if (faces_.empty())
-      throw InputError("symmetry_side_empty", "nothing of the surface is on the positive side of the mirror plane " + name);
+      throw InputError("symmetry_side_empty", "Nothing of the surface is on the positive side of the mirror plane " + name + ".");
     bool reaches = below_;
     for (std::size_t h = 0; h < opposite_.size() && !reaches; ++h)
       reaches = opposite_[h] < 0 && height(faces_[h / 3][h % 3]) == 0 && height(faces_[h / 3][(h % 3 + 1) % 3]) == 0;
     if (!reaches)
-      throw InputError("symmetry_plane_missed", "the whole surface is on one side of the mirror plane " + name +
-                                                    " and has no edge on it; mirror planes go through the origin");
+      throw InputError("symmetry_plane_missed", "The whole surface is on one side of the mirror plane " + name +
+                                                    " and has no edge on it; mirror planes go through the origin.");
   }
 
   /// Gives every fan of faces at a vertex a vertex of its own and drops vertices without faces.

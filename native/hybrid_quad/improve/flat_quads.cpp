@@ -1,0 +1,80 @@
+#include "hybrid_quad/improve/improve.h"
+
+#include <array>
+#include <vector>
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kLeastArea = 1e-10;  // over the squared mean edge length
+constexpr double kStep = 1e-4;        // over the mean edge length
+
+class FlatQuadOpener {
+ public:
+  explicit FlatQuadOpener(QuadMesh& mesh) : mesh_(mesh), edge_(mean_edge()), quads_at_(mesh.positions.size()) {
+    for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
+      for (const int v : mesh.quads[q]) quads_at_[v].push_back(q);
+  }
+
+  int run() {
+    int opened = 0;
+    for (int q = 0; q < static_cast<int>(mesh_.quads.size()); ++q) {
+      if (area_vector(q).norm() > kLeastArea * edge_ * edge_) continue;
+      open(q);
+      ++opened;
+    }
+    return opened;
+  }
+
+ private:
+  double mean_edge() const {
+    double sum = 0;
+    for (const auto& v : mesh_.quads)
+      for (int i = 0; i < 4; ++i) sum += (mesh_.positions[v[(i + 1) % 4]] - mesh_.positions[v[i]]).norm();
+    return sum / (4.0 * static_cast<double>(mesh_.quads.size()));
+  }
+
+  Vector3 diagonal(int q, int i) const { return mesh_.positions[mesh_.quads[q][i + 2]] - mesh_.positions[mesh_.quads[q][i]]; }
+  Vector3 area_vector(int q) const { return 0.5 * diagonal(q, 0).cross(diagonal(q, 1)); }
+
+  /// Where the quads around it point, any direction where they don't.
+  Vector3 normal_around(int q) const {
+    Vector3 sum = Vector3::Zero();
+    for (const int v : mesh_.quads[q])
+      for (const int other : quads_at_[v]) sum += area_vector(other);
+    return sum.norm() > kLeastArea * edge_ * edge_ ? sum.normalized() : Vector3::UnitZ();
+  }
+
+  /// Lengthens a diagonal at the end that is freer to move.
+  void lengthen(int q, int i, const Vector3& step) {
+    const int a = mesh_.quads[q][i], b = mesh_.quads[q][i + 2];
+    if (mesh_.kind[a] < mesh_.kind[b]) mesh_.positions[a] -= step;
+    else mesh_.positions[b] += step;
+  }
+
+  void open(int q) {
+    const Vector3 n = normal_around(q);
+    const double step = kStep * edge_;
+    Vector3 d0 = diagonal(q, 0);
+    const Vector3 d1 = diagonal(q, 1);
+    const auto across = [&](const Vector3& d) { return Vector3(d - n * n.dot(d)).norm() > step; };
+    if (!across(d0)) {
+      const Vector3 along = across(d1) ? Vector3(d1.cross(n)) : n.unitOrthogonal();
+      lengthen(q, 0, step * along.normalized());
+      if (across(d1)) return;
+      d0 = along;
+    }
+    lengthen(q, 1, step * n.cross(d0).normalized());
+  }
+
+  QuadMesh& mesh_;
+  const double edge_;
+  std::vector<std::vector<int>> quads_at_;
+};
+
+}  // namespace
+
+int open_flat_quads(QuadMesh& mesh) { return mesh.quads.empty() ? 0 : FlatQuadOpener(mesh).run(); }
+
+}  // namespace hybrid_quad

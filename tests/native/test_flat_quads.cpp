@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "hybrid_quad/improve/improve.h"
+
+namespace hybrid_quad {
+namespace {
+
+/// 3 x 3 quads, the middle one with corners 5, 6, 10, 9.
+QuadMesh nine_quads() {
+  QuadMesh mesh;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      mesh.positions.emplace_back(i, j, 0);
+      mesh.kind.push_back(VertexKind::kFree);
+      mesh.anchor.push_back(0);
+    }
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) mesh.quads.push_back({4 * j + i, 4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 4});
+  return mesh;
+}
+
+double upward_area(const QuadMesh& mesh, int q) {
+  const auto& v = mesh.quads[q];
+  return 0.5 * (mesh.positions[v[2]] - mesh.positions[v[0]]).cross(mesh.positions[v[3]] - mesh.positions[v[1]]).z();
+}
+
+TEST(FlatQuads, GetAnAreaOnTheRightSide) {
+  const std::vector<std::array<Vector3, 4>> flat = {
+      {Vector3(1, 1, 0), Vector3(1, 1, 0), Vector3(1, 1, 0), Vector3(1, 1, 0)},                  // a point
+      {Vector3(1, 1, 0), Vector3(1.4, 1, 0), Vector3(2, 1, 0), Vector3(1.7, 1, 0)},              // a line
+      {Vector3(1.5, 1.5, 0), Vector3(2, 1, 0), Vector3(1.5, 1.5, 0), Vector3(1, 2, 0)},          // a diagonal of no length
+      {Vector3(2, 1, 0), Vector3(1.5, 1.5, 0), Vector3(1, 2, 0), Vector3(1.5, 1.5, 0)},          // the other one
+  };
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    QuadMesh mesh = nine_quads();
+    for (int c = 0; c < 4; ++c) mesh.positions[mesh.quads[4][c]] = flat[i][c];
+    EXPECT_EQ(open_flat_quads(mesh), 1) << i;
+    EXPECT_GT(upward_area(mesh, 4), 1e-10) << i;
+    for (int c = 0; c < 4; ++c) EXPECT_LT((mesh.positions[mesh.quads[4][c]] - flat[i][c]).norm(), 1e-3) << i;
+    EXPECT_EQ(open_flat_quads(mesh), 0) << i;
+  }
+}
+
+TEST(FlatQuads, FreeVerticesMoveFirst) {
+  QuadMesh mesh = nine_quads();
+  const auto quad = mesh.quads[4];
+  for (const int v : {quad[0], quad[1], quad[2]}) mesh.kind[v] = VertexKind::kCorner;
+  mesh.positions[quad[3]] = {1.5, 1, 0};
+  mesh.positions[quad[2]] = {1.8, 1, 0};
+  const QuadMesh before = mesh;
+  EXPECT_EQ(open_flat_quads(mesh), 1);
+  for (const int v : {quad[0], quad[1], quad[2]}) EXPECT_EQ(mesh.positions[v], before.positions[v]);
+}
+
+TEST(FlatQuads, GoodOnesStay) {
+  QuadMesh mesh = nine_quads();
+  const QuadMesh before = mesh;
+  EXPECT_EQ(open_flat_quads(mesh), 0);
+  EXPECT_EQ(mesh.positions, before.positions);
+}
+
+}  // namespace
+}  // namespace hybrid_quad

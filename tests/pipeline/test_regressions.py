@@ -1,0 +1,30 @@
+"""Cases that once failed, each in a folder: found by listing it."""
+
+from pathlib import Path
+
+import pytest
+
+from fuzz.cases import load_case, make_case
+from fuzz.verdict import verdict_of
+
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "regressions"
+SEEDS = range(12)  # of random cases, besides
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in FOLDER.glob("*") if (path / "options.json").exists()))
+def test_what_once_failed(name):
+    assert verdict_of(load_case(FOLDER / name), 60.0)["outcome"] in ("valid", "flawed", "refused")
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_random_surfaces_with_random_wishes(seed):
+    verdict = verdict_of(make_case(seed), 60.0)
+    assert verdict["outcome"] in ("valid", "flawed", "refused"), verdict
+
+
+def test_a_case_in_a_folder_is_the_same_case(tmp_path):
+    case = make_case(3)
+    case.save(tmp_path)
+    again = load_case(tmp_path)
+    assert (again.vertices == case.vertices).all()
+    assert (again.faces, again.options) == (case.faces, case.options)
