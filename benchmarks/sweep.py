@@ -8,7 +8,6 @@ was interrupted goes on where it stopped; results of another build of the librar
 from __future__ import annotations
 
 import argparse
-import csv
 import hashlib
 import json
 import sys
@@ -18,7 +17,7 @@ from pathlib import Path
 
 import table
 from hybrid_quad.core import native
-from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, manifold_models, run_and_judge
 
 
 def main() -> int:
@@ -88,24 +87,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _runs(arguments: argparse.Namespace) -> Iterator[Run]:
-    files: Iterable[Path] = arguments.files or _manifold_models(arguments.models)
+    files: Iterable[Path] = arguments.files or manifold_models(arguments.models)
     for path in files:
         if arguments.only and not any(part in path.stem for part in arguments.only):
             continue
         for quads in arguments.quads:
             for setting in arguments.settings:
                 yield Run(path.stem, path, quads, setting)
-
-
-def _manifold_models(folder: Path) -> Iterator[Path]:
-    index = folder / "index.csv"
-    if not index.exists():
-        yield from sorted(folder.glob("*.obj"))
-        return
-    with index.open() as file:
-        for row in csv.DictReader(file):
-            if row["edge_mf"] == row["vert_mf"] == "y":
-                yield folder / f"{row['name']}.obj"
 
 
 def build_id() -> str:

@@ -315,7 +315,9 @@ class ComponentRemesher {
     o.fit = options_.fit;
     o.target_length = length_;
     o.usual_size = doubtful_size_;
+    constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
     if (wishes_.most_stretch > 1) o.aspect_power = 1;
+    else if (!wishes_.density.empty()) o.aspect_power = kAspectOfSizes;
     return o;
   }
 
