@@ -33,7 +33,7 @@ void CountSearch::record(double got) {
 }
 
 double CountSearch::unasked(double asked) const {
-  constexpr double kSame = 0.01, kAside = 0.04;
+  constexpr double kSame = 1e-3, kAside = 0.04;
   const auto is_known = [&](double x) {
     return std::any_of(samples_.begin(), samples_.end(), [&](const Sample& s) { return std::abs(s.asked - x) < kSame; });
   };
