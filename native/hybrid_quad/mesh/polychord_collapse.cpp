@@ -8,6 +8,14 @@ namespace {
 
 constexpr int kLeastEdgesOfLoop = 4;  ///< of a curve that ends nowhere
 
+/// Quads with feature edges on opposite sides.
+int lone_quads(const QuadComplex& c) {
+  int count = 0;
+  for (int d = 0; d < static_cast<int>(c.curve.size()); d += 4)
+    count += (c.curve[d] >= 0 && c.curve[d + 2] >= 0) || (c.curve[d + 1] >= 0 && c.curve[d + 3] >= 0);
+  return count;
+}
+
 class PolychordCollapse {
  public:
   PolychordCollapse(const QuadComplex& complex, const Polychords& polychords, int id)
@@ -129,7 +137,7 @@ class PolychordCollapse {
 
   bool is_sound(const QuadComplex& result) const {
     return result.quad_count() > 0 && violations_of(result).empty() && violations_of(to_quad_mesh(result)).empty() &&
-           euler_characteristic(result) == euler_characteristic(complex_);
+           euler_characteristic(result) == euler_characteristic(complex_) && lone_quads(result) <= lone_quads(complex_);
   }
 
   const QuadComplex& complex_;

@@ -8,7 +8,8 @@ namespace hybrid_quad {
 /// where what is bound to a curve or corner stays, else in the middle.
 /// \param id  of the polychord
 /// \return false, and nothing changed, where the strip touches itself, where two different curves or corners would meet, or
-/// where what comes of it is no indexed mesh: a curve without edges, a doublet, a double edge, a border of three edges
+/// where what comes of it is no indexed mesh: a curve without edges, a doublet, a double edge, a border of three edges; or where more quads
+/// would lie alone between two features
 bool collapse_polychord(QuadComplex& complex, const Polychords& polychords, int id);
 
 }  // namespace hybrid_quad

@@ -39,7 +39,9 @@ constexpr Settings kSettings[] = {{},
                                   {1.3, 1e-4, true},
                                   {1.8, 1e-5, true},
                                   {2.5, 1e-4, true},
-                                  {4.0, 1e-5, true}};
+                                  {4.0, 1e-5, true},
+                                  {3.2, 1e-4, true},
+                                  {5.0, 1e-4, true}};
 /// So many flawed quads are not mended by another pass with as few.
 constexpr int kManyFlaws = 12;
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
@@ -129,7 +131,7 @@ class ComponentRemesher {
       const bool is_stuck = search.at_least() || search.is_stuck();
       if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
       const bool is_last = i + 1 == tries || is_stuck;
-      const bool with_rows = is_last || i >= kTriesWithoutRows;
+      const bool with_rows = !settings_.as_needed && (is_last || i >= kTriesWithoutRows);
       Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
       result_.extracted_quads += current.count();
       const double before_rows = current.quads_before_rows;
@@ -268,7 +270,7 @@ class ComponentRemesher {
       out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
       out.repairs.split_polychords = repair.split_polychords;
       out.quads_before_rows = complex.quad_count();
-      if (wanted > 0 && plan_.guides.empty())
+      if (wanted > 0 && plan_.guides.empty() && wishes_.most_stretch <= 1)
         out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted);
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
