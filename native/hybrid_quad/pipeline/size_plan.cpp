@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kMostStretch = 1.6;
 constexpr double kMostGiving = 2;
-constexpr double kMostCrowded = 0.3;  ///< edges that features must have, over quads
+// Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
+// the second.
+constexpr double kTooCrowded = 0.6, kRoomy = 0.3;
 
 int boundary_loops(const TriangleMesh& mesh) {
   std::vector<char> seen(mesh.vertex_count(), 0);
@@ -143,7 +145,7 @@ double crowding(const TriangleMesh& mesh, const FeatureGraph& features, double q
 bool make_room(ComponentPlan& plan) {
   constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
   const double length = std::sqrt(plan.mesh.total_area() / plan.quads);
-  if (crowding(plan.mesh, plan.features, plan.quads, length) <= kMostCrowded) return false;
+  if (crowding(plan.mesh, plan.features, plan.quads, length) <= kTooCrowded) return false;
   std::vector<char> is_kept = plan.is_given;
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
     if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_kept[h] = 1;
@@ -152,7 +154,7 @@ bool make_room(ComponentPlan& plan) {
   for (const double gap : kGaps) {
     remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
     fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
-    if (crowding(plan.mesh, fewer, plan.quads, length) <= kMostCrowded) break;
+    if (crowding(plan.mesh, fewer, plan.quads, length) <= kRoomy) break;
   }
   std::vector<char> gone(plan.features.curves.size(), 0);
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
