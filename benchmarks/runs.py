@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import resource
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -130,6 +132,18 @@ def run_and_judge(
     if not keep_meshes:
         out.unlink(missing_ok=True)
     return outcome
+
+
+def manifold_models(folder: Path) -> Iterator[Path]:
+    """The models that an index beside them says are manifold; without an index, all."""
+    index = folder / "index.csv"
+    if not index.exists():
+        yield from sorted(folder.glob("*.obj"))
+        return
+    with index.open() as file:
+        for row in csv.DictReader(file):
+            if row["edge_mf"] == row["vert_mf"] == "y":
+                yield folder / f"{row['name']}.obj"
 
 
 @dataclass

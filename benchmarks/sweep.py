@@ -8,7 +8,6 @@ was interrupted goes on where it stopped; results of another build of the librar
 from __future__ import annotations
 
 import argparse
-import csv
 import hashlib
 import json
 import sys

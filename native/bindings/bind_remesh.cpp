@@ -102,6 +102,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["removed_quads"] = repairs.removed_quads;
   result["added_rings"] = repairs.added_rings;
   result["split_polychords"] = repairs.split_polychords;
+  result["fitted_rows"] = repairs.fitted_rows;
   result["opened_straight_quads"] = repairs.opened_straight_quads;
   result["mended_places"] = repairs.mended_places;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
@@ -158,6 +159,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["symmetry"] = dict_of_symmetry(report.symmetry);
   result["curve_counts"] = list_of_counts(report.curve_counts);
   result["guides"] = list_of_guides(report.guides);
+  result["features_given_way"] = report.features_given_way;
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
   result["scaled_jacobian"] = jacobian;

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "hybrid_quad/pipeline/count_search.h"
 
@@ -13,7 +15,7 @@ double least_error(double wanted, int tries, const std::function<double(double)>
   double least = 1e9;
   for (int i = 0; i < tries; ++i) {
     const double got = outcome(search.next());
-    least = std::min(least, search.error(got));
+    least = std::min(least, std::abs(std::log(got / wanted)));
     search.record(got);
   }
   return least;
@@ -34,6 +36,22 @@ TEST(CountSearch, IsNotStuckWhereAskingMakesADifference) {
   for (int i = 0; i < 4; ++i) {
     search.record(300 + 0.4 * search.next());
     EXPECT_FALSE(search.is_stuck());
+  }
+}
+
+TEST(CountSearch, StaysBetweenWhatGivesTooFewAndTooMany) {
+  // Rows that flip together: no number between.
+  const auto outcome = [](double asked) { return asked < 491 ? 440.0 : 560.0; };
+  CountSearch search(500);
+  double few = 0, many = 1e9;
+  std::vector<double> asked;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_GT(search.next(), few);
+    EXPECT_LT(search.next(), many);
+    EXPECT_EQ(std::count(asked.begin(), asked.end(), search.next()), 0);
+    asked.push_back(search.next());
+    (outcome(search.next()) < 500 ? few : many) = search.next();
+    search.record(outcome(search.next()));
   }
 }
 

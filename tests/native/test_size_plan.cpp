@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 #include "support/meshes.h"
 
@@ -52,7 +55,7 @@ TEST(SizePlan, LeavesRoomySurfacesAlone) {
 TEST(SizePlan, RefinesWhereTold) {
   const ComponentPlan coarse = plan(test::icosphere(4), 0.3);
   const Vector3 pole(0, 0, 1);
-  const ComponentPlan fine = refined_plan(coarse, 1.0, false, {{pole, 0.1}});
+  const ComponentPlan fine = refined_plan(coarse, 1.0, true, {{pole, 0.1}});
   EXPECT_GT(fine.quads, coarse.quads);
   for (int v = 0; v < fine.mesh.vertex_count(); ++v) {
     EXPECT_LE(fine.target[v], coarse.target[v]);
@@ -64,6 +67,50 @@ TEST(SizePlan, RefinesWhereTold) {
     }
   }
   EXPECT_NEAR(refined_plan(coarse, 2.0, false, {}).quads, 2 * coarse.quads, 1e-6 * coarse.quads);
+}
+
+TEST(SizePlan, ShorterEdgesAtPlacesAreNoReasonForMoreQuads) {
+  const ComponentPlan coarse = plan(test::icosphere(4), 0.3);
+  const ComponentPlan finer = refined_plan(coarse, 1.0, false, {{Vector3(0, 0, 1), 0.05}});
+  EXPECT_NEAR(finer.quads, coarse.quads, 1e-6 * coarse.quads);
+  EXPECT_NEAR(quads_for_lengths(finer.mesh, finer.target), coarse.quads, 0.01 * coarse.quads);
+  EXPECT_GT(refined_plan(coarse, 1.0, true, {{Vector3(0, 0, 1), 0.05}}).quads, coarse.quads);
+}
+
+TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
+  const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1));
+  const auto features_for = [&](double quads, const MarkedEdges& marked) {
+    std::vector<ComponentPlan> plans{
+        plan_component(slab, std::sqrt(slab.total_area() / quads), marked, {}, Wishes{}, RemeshOptions{}, RunContext{})};
+    balance_plans(plans, quads);
+    make_room_for_count(plans, quads, 0, RunContext{});
+    EXPECT_EQ(violations_of(plans[0].features, plans[0].mesh), std::vector<std::string>{});
+    EXPECT_EQ(plans[0].given_way > 0, plans[0].features.curves.size() < 12);
+    return plans[0].features.curves.size();
+  };
+  EXPECT_EQ(features_for(400, {}), 12u);
+  EXPECT_LT(features_for(20, {}), 12u);
+  MarkedEdges all;
+  const FeatureGraph features = detect_features(slab, FeatureOptions{}, RunContext{});
+  for (int h = 0; h < slab.halfedge_count(); ++h)
+    if (features.is_feature(h) && slab.opposite(h) < h) all.ends.push_back({slab.from(h), slab.to(h)});
+  all.guides.assign(all.ends.size(), -1);
+  EXPECT_EQ(features_for(20, all), 12u);
+}
+
+TEST(CountBudget, WhatOneTakesTheOthersPay) {
+  std::vector<ComponentPlan> plans{plan(test::icosphere(3), 0.3), plan(test::icosphere(3), 0.2)};
+  const double wanted = plans[0].quads + plans[1].quads;
+  CountBudget budget(plans, wanted);
+  EXPECT_DOUBLE_EQ(budget.factor(), 1);
+  budget.spend(plans[0].quads, 1.4 * plans[0].quads);
+  ComponentPlan last = plans[1];
+  scale_plan(last, budget.factor());
+  EXPECT_NEAR(1.4 * plans[0].quads + last.quads, wanted, 1e-9 * wanted);
+  EXPECT_NEAR(quads_for_lengths(last.mesh, last.target), last.quads, 1e-6 * last.quads);
+  // But not all of it.
+  budget.spend(0, 10 * wanted);
+  EXPECT_GT(budget.factor(), 0.3);
 }
 
 }  // namespace

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
+#include "hybrid_quad/mesh/quad_count.h"
 #include "hybrid_quad/mesh/straight_quads.h"
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/extraction.h"
 #include "hybrid_quad/pipeline/guide_curves_in_quads.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -29,29 +30,28 @@ enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
 struct Settings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
+  bool as_needed = false;  ///< nothing gives way for the number of quads
 };
-constexpr Settings kSettings[] = {{}, {1.03, 1e-4}, {0.98, 1e-5}, {1.3, 1e-4}, {1.8, 1e-5}, {2.5, 1e-4}, {4.0, 1e-5}};
+constexpr Settings kSettings[] = {{},
+                                  {1.03, 1e-4, false},
+                                  {0.98, 1e-5, false},
+                                  {1.0, 1e-4, true},
+                                  {1.3, 1e-4, true},
+                                  {1.8, 1e-5, true},
+                                  {2.5, 1e-4, true},
+                                  {4.0, 1e-5, true},
+                                  {3.2, 1e-4, true},
+                                  {5.0, 1e-4, true}};
+/// So many flawed quads are not mended by another pass with as few.
+constexpr int kManyFlaws = 12;
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
 /// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;
-constexpr double kFewMore = 1.1;  ///< no more quads than that for the sake of doubtful ones
 constexpr double kShorterWhereFlawed = 0.6;
+constexpr double kShareOfTolerance = 0.6;  ///< that rows of quads are fitted to: improvement takes its own
 // Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
 // ones hardly any.
 constexpr double kLeastSize = 0.009, kDoubtfulSize = 0.018;
-
-struct Extraction {
-  QuadMesh mesh;
-  SpanningParameterization param;
-  int patch_count = 0, combinatorial_count = 0;
-  double singular_area = 0, combinatorial_area = 0;
-  RepairRecord repairs;
-  FeatureGraph features;     ///< whose curves the feature edges are on, where some became rings
-  std::vector<GuideEdge> rings, chains;
-  int flawed = 0;            ///< quads, after improvement
-  int missed = 0;            ///< missed_counts()
-  double count_error = 0;    ///< | log(count / asked) |, after improvement
-};
 
 /// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
 double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
@@ -127,44 +127,69 @@ class ComponentRemesher {
     return unit;
   }
 
-  /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked.
+  /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked; where that
+  /// does not help at once, rows of quads are split or taken out.
   Extraction extract_with_count(const FrameField& unit) {
-    constexpr int kTriesOfMany = 4, kTriesOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
-    constexpr double kTolerance = 0.035, kToleranceInQuads = 2, kHopeless = 0.15;
-    // Later passes are there for flawed quads: the count matters less.
-    const int tries = plan_.quads < kFew && settings_.quads_factor == 1 ? kTriesOfFew : kTriesOfMany;
-    const double tolerance = std::max(kTolerance, kToleranceInQuads / plan_.quads);
-    const SurfaceIndex& index = *plan_.index;
-    // Rows that counted curves call for are not paid for by ever larger quads everywhere else.
+    constexpr int kTriesWithoutRows = 1;
+    const int tries = most_tries();
+    CountSearch search(plan_.quads, least_to_ask());
+    ExtractionChoice choice = choice_of_tries(tries);
+    for (int i = 0; i < tries; ++i) {
+      const bool is_stuck = search.at_least() || search.is_stuck();
+      if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
+      const bool is_last = i + 1 == tries || is_stuck;
+      const bool with_rows = !settings_.as_needed && (is_last || i >= kTriesWithoutRows);
+      Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
+      result_.extracted_quads += current.count();
+      result_.work += result_.working_faces;
+      const double before_rows = current.quads_before_rows;
+      if (choice.is_far(current)) {
+        choice.set_aside(std::move(current));
+        search.record(before_rows / choice.lost());
+        if (!is_last) continue;
+        if (choice.any()) break;
+        current = choice.nearest_set_aside();
+      }
+      const double extracted = current.count();
+      finish(current);
+      choice.take(std::move(current), extracted);
+      if (is_last || choice.is_done()) break;
+      search.record(before_rows / choice.lost());
+    }
+    return choice.best();
+  }
+
+  int most_tries() const {
+    constexpr int kOfMany = 4, kOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
+    return plan_.quads < kFew && settings_.quads_factor == 1 && !settings_.as_needed ? kOfFew : kOfMany;
+  }
+
+  /// Passes with as many quads as it takes are there for flawed quads: there the count matters less.
+  ExtractionChoice choice_of_tries(int tries) const {
+    constexpr double kNearAsNeeded = 0.15, kLastResort = 2;
+    if (!settings_.as_needed) return ExtractionChoice(plan_.quads, count_tolerance(), 2);
+    return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries);
+  }
+
+  /// Rows that counted curves call for are not paid for by ever larger quads everywhere else.
+  double least_to_ask() const {
     constexpr double kLeastBesideCounts = 0.6;
     const auto& curves = plan_.features.curves;
-    const bool counted = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
-    CountSearch search(plan_.quads, counted ? kLeastBesideCounts * plan_.quads : 0);
-    Extraction best;
-    bool any = false;
-    for (int i = 0; i < tries; ++i) {
-      const bool last = i + 1 == tries || search.at_least() || search.is_stuck();
-      Extraction current = extract_by_any_means(unit, search.next());
-      double count = static_cast<double>(current.mesh.quads.size());
-      result_.extracted_quads += count;
-      result_.work += result_.working_faces;
-      // What is as far off as that needs no improving, unless it is all there is.
-      if (search.error(count) < kHopeless || (last && !any)) {
-        if (options_.improve) improve(index, current);
-        make_mirrorable(index, current.mesh);
-        current.missed = missed_counts(plan_.features, current.mesh);
-        settle_hard_guides(current);
-        count = static_cast<double>(current.mesh.quads.size());
-        current.count_error = search.error(count);
-        const auto rank = [](const Extraction& e) { return std::make_tuple(e.flawed, e.missed, e.count_error); };
-        if (!any || rank(current) < rank(best)) best = std::move(current);
-        any = true;
-        if (last || (best.flawed == 0 && best.count_error < tolerance)) break;
-      }
-      if (last) break;
-      search.record(count);
-    }
-    return best;
+    const bool any = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
+    return any ? kLeastBesideCounts * plan_.quads : 0;
+  }
+
+  /// Of the logarithm of the number of quads.
+  double count_tolerance() const {
+    constexpr double kTolerance = 0.035, kToleranceInQuads = 2;
+    return std::max(kTolerance, kToleranceInQuads / plan_.quads);
+  }
+
+  void finish(Extraction& extraction) {
+    if (options_.improve) improve(*plan_.index, extraction);
+    make_mirrorable(*plan_.index, extraction.mesh);
+    extraction.missed = missed_counts(plan_.features, extraction.mesh);
+    settle_hard_guides(extraction);
   }
 
   void take(Extraction best) {
@@ -182,16 +207,17 @@ class ComponentRemesher {
     result_.curve_planes = seam_planes(mesh_, result_.features, options_.symmetry.planes);
   }
 
-  Extraction extract_by_any_means(const FrameField& unit, double asked) {
+  /// \param wanted  number of quads to be met by rows; 0: as many as come out
+  Extraction extract_by_any_means(const FrameField& unit, double asked, double wanted) {
     for (const Attempt attempt : {Attempt::kFull, Attempt::kWithoutCancellation}) {
       try {
-        return extract(unit, asked, attempt);
+        return extract(unit, asked, wanted, attempt);
       } catch (const InternalError& error) {
         ++result_.repairs.broken_promises;
         result_.warnings.push_back(std::string("fell back after a broken promise in ") + error.what());
       }
     }
-    return extract(unit, asked, Attempt::kPatchesOnly);
+    return extract(unit, asked, wanted, Attempt::kPatchesOnly);
   }
 
   /// Frames for a number of quads. Where that only scales them, they are solved for once.
@@ -213,7 +239,7 @@ class ComponentRemesher {
     });
   }
 
-  Extraction extract(const FrameField& unit, double asked, Attempt attempt) {
+  Extraction extract(const FrameField& unit, double asked, double wanted, Attempt attempt) {
     const FrameField frames = sized_frames(unit, asked);
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(frames, surface_, "sizing"));
     const PeriodicField psi = clock_.measure("periodic field", [&] {
@@ -252,6 +278,9 @@ class ComponentRemesher {
       out.repairs.removed_quads = repair.cancelled_singlets + repair.merged_doublets;
       out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
       out.repairs.split_polychords = repair.split_polychords;
+      out.quads_before_rows = complex.quad_count();
+      if (wanted > 0 && plan_.guides.empty() && wishes_.most_stretch <= 1)
+        out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted);
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);
@@ -297,7 +326,9 @@ class ComponentRemesher {
     o.fit = options_.fit;
     o.target_length = length_;
     o.usual_size = doubtful_size_;
+    constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
     if (wishes_.most_stretch > 1) o.aspect_power = 1;
+    else if (!wishes_.density.empty()) o.aspect_power = kAspectOfSizes;
     return o;
   }
 
@@ -375,7 +406,8 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
   for (const Settings& settings : kSettings) {
-    if (any && settings.quads_factor > kFewMore && best.flawed_quads == 0) break;
+    if (any && settings.as_needed && best.flawed_quads == 0) break;
+    if (any && !settings.as_needed && best.flawed_quads > kManyFlaws) continue;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
     if (any && budget.left - settings.quads_factor * first_work < reserve) {
       best.gave_up = best.flawed_quads > 0;
@@ -383,10 +415,9 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
     }
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
-      const bool refined = !limits.empty() || settings.quads_factor != 1;
-      const bool as_needed = settings.quads_factor > kFewMore;
+      const bool refined = !limits.empty() || settings.quads_factor != 1 || settings.as_needed;
       const ComponentPlan finer =
-          refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
+          refined ? refined_plan(plan, settings.quads_factor, settings.as_needed, limits) : ComponentPlan{};
       ComponentResult result =
           ComponentRemesher(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());

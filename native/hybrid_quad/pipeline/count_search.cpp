@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hybrid_quad {
-
-double CountSearch::error(double got) const { return std::abs(std::log(std::max(got, 1.0) / wanted_)); }
 
 bool CountSearch::is_stuck() const {
   constexpr double kFar = 0.3, kNextToNothing = 0.1;
@@ -22,11 +21,36 @@ void CountSearch::record(double got) {
   double slope = 1;
   const auto nearest = std::min_element(samples_.begin(), samples_.end(),
                                         [](const Sample& a, const Sample& b) { return std::abs(a.got) < std::abs(b.got); });
-  if (nearest != samples_.end() && std::abs(nearest->asked - now.asked) > 1e-9)
-    slope = std::clamp((nearest->got - now.got) / (nearest->asked - now.asked), kLeastSlope, kMostSlope);
+  if (nearest != samples_.end() && std::abs(nearest->asked - now.asked) > 1e-9) {
+    slope = (nearest->got - now.got) / (nearest->asked - now.asked);
+    // Where asking for fewer gave more, the number leaps about: no far step from the best.
+    slope = slope < 0 ? kMostSlope : std::clamp(slope, kLeastSlope, kMostSlope);
+  }
   const Sample from = nearest != samples_.end() && std::abs(nearest->got) < std::abs(now.got) ? *nearest : now;
   samples_.push_back(now);
-  next_ = std::max(least_, wanted_ * std::exp(from.asked + std::clamp(-from.got / slope, -kLongestStep, kLongestStep)));
+  const double step = std::clamp(-from.got / slope, -kLongestStep, kLongestStep);
+  next_ = std::max(least_, wanted_ * std::exp(unasked(between(from.asked + step))));
+}
+
+double CountSearch::unasked(double asked) const {
+  constexpr double kSame = 1e-3, kAside = 0.04;
+  const auto is_known = [&](double x) {
+    return std::any_of(samples_.begin(), samples_.end(), [&](const Sample& s) { return std::abs(s.asked - x) < kSame; });
+  };
+  double aside = 0;
+  for (; is_known(asked + aside); aside = aside > 0 ? -aside : kAside - aside) {}
+  return asked + aside;
+}
+
+double CountSearch::between(double asked) const {
+  constexpr double kMargin = 0.15;
+  double few = -std::numeric_limits<double>::infinity(), many = std::numeric_limits<double>::infinity();
+  for (const Sample& s : samples_) {
+    if (s.got <= 0) few = std::max(few, s.asked);
+    if (s.got >= 0) many = std::min(many, s.asked);
+  }
+  const double margin = kMargin * (many - few);
+  return std::isfinite(margin) && margin > 0 ? std::clamp(asked, few + margin, many - margin) : asked;
 }
 
 }  // namespace hybrid_quad

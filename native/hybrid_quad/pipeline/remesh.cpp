@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/guided_input.h"
@@ -159,6 +161,13 @@ int lone_quads(const QuadMesh& mesh) {
   return count;
 }
 
+std::vector<int> smallest_first(const std::vector<ComponentPlan>& plans) {
+  std::vector<int> order(plans.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return plans[a].quads < plans[b].quads; });
+  return order;
+}
+
 void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
                      const std::vector<ComponentResult>& parts, const SurfaceIndex& whole, const RunContext& context) {
   RemeshReport& r = result.report;
@@ -207,6 +216,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   removed_quads += other.removed_quads;
   added_rings += other.added_rings;
   split_polychords += other.split_polychords;
+  fitted_rows += other.fitted_rows;
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
   opened_flat_quads += other.opened_flat_quads;
@@ -254,6 +264,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   std::vector<MarkedEdges> marked;
   CurveCountLedger counts(options.curve_counts, soup, frame.scale, images);
   double wanted = 0;  // quads
+  bool is_by_count = false;
   clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
     for (const Component& c : components) marked.push_back(marked_in(c, domain));
@@ -273,29 +284,38 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
       plans.push_back(plan_component(components[i].mesh, length, marked[i],
                                      counts.chains_on(components[i].mesh, components[i].face, domain.counted_curve), wishes[i],
                                      domain.options, plan_context));
-    if (!(given > 0)) balance_plans(plans, static_cast<double>(options.quads) / images);
+    is_by_count = !(given > 0);
+    if (!is_by_count) return;
+    balance_plans(plans, wanted / images);
+    make_room_for_count(plans, wanted / images, domain.options.symmetry.planes, plan_context);
   });
 
   const SurfaceIndex whole(built.mesh, {});
-  WorkBudget budget{kExtraWork + kExtraWorkPerQuad * wanted};
-  std::vector<ComponentResult> parts;
-  GuidedEdges guided;
+  std::vector<ComponentResult> parts(components.size());
+  CountBudget budget(plans, is_by_count ? wanted / images : 0);
+  WorkBudget work{kExtraWork + kExtraWorkPerQuad * wanted};
   double done = 0, singular_area = 0, combinatorial_area = 0;
-  for (std::size_t i = 0; i < components.size(); ++i) {
+  for (const int i : smallest_first(plans)) {
     const double share = components[i].mesh.total_area() / area;
     RunContext part_context = context;
     part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    parts.push_back(remesh_component(plans[i], whole, wishes[i], guides, domain.options, budget, clock, part_context));
-    counts.record(plans[i], on_curves_of(plans[i], parts.back()));
+    const double planned = plans[i].quads;
+    if (is_by_count) scale_plan(plans[i], budget.factor());
+    parts[i] = remesh_component(plans[i], whole, wishes[i], guides, domain.options, work, clock, part_context);
+    budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
+    done += share;
+  }
+  GuidedEdges guided;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    counts.record(plans[i], on_curves_of(plans[i], parts[i]));
     std::vector<int> input_vertex;
     for (const int v : components[i].vertex)
       input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
     input_vertex.resize(plans[i].mesh.vertex_count(), -1);  // what halving long edges added; corners in folds, now and then
-    append(result, whole_of(parts.back(), components[i].mesh, marked[i].ends, domain.options), parts.back(), input_vertex, images, guided);
-    singular_area += parts.back().singular_area;
-    combinatorial_area += parts.back().combinatorial_area;
-    done += share;
+    append(result, whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options), parts[i], input_vertex, images, guided);
+    singular_area += parts[i].singular_area;
+    combinatorial_area += parts[i].combinatorial_area;
   }
   report.singular_area_fraction = singular_area / area;
   report.patches.combinatorial_area_fraction = combinatorial_area / area;
@@ -304,6 +324,10 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   if (std::abs(report.quads / wanted - 1) > 0.1)
     report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
                               ": features or small parts need another number");
+  for (const ComponentPlan& plan : plans) report.features_given_way += images * plan.given_way;
+  if (report.features_given_way > 0)
+    report.warnings.push_back(std::to_string(report.features_given_way) +
+                              " curves of edges by angle gave way to the number of quads: more quads, or marks, keep them");
   const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
     report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");

@@ -80,6 +80,7 @@ struct RepairRecord {
   int removed_quads = 0;         ///< at inner vertices of valence 1 and 2
   int added_rings = 0;           ///< rings of quads and stars that undo double edges where nothing can be removed
   int split_polychords = 0;      ///< strips doubled to make room
+  int fitted_rows = 0;           ///< strips doubled or taken out for the number of quads
   int opened_straight_quads = 0; ///< quads with three sides on one feature
   int mended_places = 0;         ///< changes that only flawed quads called for
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
@@ -127,6 +128,7 @@ struct RemeshReport {
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
   PatchRecord patches;
   RepairRecord repairs;
+  int features_given_way = 0;            ///< feature curves by angle that gave way to the number of quads
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;

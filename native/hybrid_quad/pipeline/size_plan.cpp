@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "hybrid_quad/features/features_with_room.h"
 #include "hybrid_quad/mesh/edge_bisection.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -13,6 +15,9 @@ namespace {
 
 constexpr double kMostStretch = 1.6;
 constexpr double kMostGiving = 2;
+// Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
+// the second.
+constexpr double kTooCrowded = 0.6, kRoomy = 0.3;
 
 int boundary_loops(const TriangleMesh& mesh) {
   std::vector<char> seen(mesh.vertex_count(), 0);
@@ -50,17 +55,28 @@ std::vector<int> guides_on_edges(const TriangleMesh& mesh, const BisectedMesh& f
   return found_guides;
 }
 
+/// Half-edges of the given edges, both sides.
+std::vector<char> on_edges(const TriangleMesh& mesh, const std::vector<std::array<int, 2>>& edges) {
+  std::set<std::array<int, 2>> given;
+  for (const auto& [a, b] : edges) given.insert({std::min(a, b), std::max(a, b)});
+  std::vector<char> found(mesh.halfedge_count(), 0);
+  if (given.empty()) return found;
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    found[h] = given.count({std::min(mesh.from(h), mesh.to(h)), std::max(mesh.from(h), mesh.to(h))}) > 0;
+  return found;
+}
+
 /// Vertices at tight bends of hard guides become corners.
-void add_guide_corners(ComponentPlan& plan, const FeatureOptions& options) {
+void add_guide_corners(ComponentPlan& plan) {
   std::vector<char> on_guide(plan.features.curves.size(), 0), is_feature(plan.mesh.halfedge_count());
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
     is_feature[h] = plan.features.is_feature(h);
     if (is_feature[h] && plan.guides[h] >= 0) on_guide[plan.features.halfedge_curve[h]] = 1;
   }
-  std::vector<int> corners = tight_bends(plan.mesh, plan.features, on_guide, plan.length);
+  const std::vector<int> corners = tight_bends(plan.mesh, plan.features, on_guide, plan.length);
   if (corners.empty()) return;
-  corners.insert(corners.end(), options.corners.begin(), options.corners.end());
-  plan.features = trace_features(plan.mesh, is_feature, options.corner_angle, corners);
+  plan.corners.insert(plan.corners.end(), corners.begin(), corners.end());
+  plan.features = trace_features(plan.mesh, is_feature, FeatureOptions{}.corner_angle, plan.corners);
 }
 
 /// How much longer edges are made than they were planned.
@@ -93,6 +109,60 @@ void shorten_for_counts(ComponentPlan& plan) {
     any = true;
   }
   if (any) grade_lengths(plan.mesh, *std::max_element(plan.target.begin(), plan.target.end()), plan.target);
+}
+
+/// Everything about the lengths of edges that the features decide.
+void plan_lengths(ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
+  plan.chains = plan_curve_counts(plan.mesh, plan.asked_chains, plan.features);
+  plan.curve_planes = seam_planes(plan.mesh, plan.features, mirror_planes);
+  plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region);
+  FeatureSizeOptions feature_size;
+  feature_size.least_ratio = plan.least_ratio;
+  plan.target = asked_lengths(*plan.index, plan.features, plan.length, plan.density, feature_size, context);
+  shorten_for_counts(plan);
+  plan.needed = plan.target;
+  plan.quads = quads_for_lengths(plan.mesh, plan.target);
+}
+
+double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
+    sum += (mesh.position(curve.vertices[i + 1]) - mesh.position(curve.vertices[i])).norm();
+  return sum;
+}
+
+/// Edges that features must have, over the number of quads: every curve one, closed ones four, long ones as many as edges
+/// of four times the usual length make. \param length  the usual one
+double crowding(const TriangleMesh& mesh, const FeatureGraph& features, double quads, double length) {
+  constexpr double kOpen = 1, kClosed = 4, kLongest = 4;
+  double edges = 0;
+  for (const FeatureCurve& curve : features.curves)
+    edges += std::max(curve.closed ? kClosed : kOpen, length_of(mesh, curve) / (kLongest * length));
+  return edges / quads;
+}
+
+/// Takes as few features away as make room. \returns whether any
+bool make_room(ComponentPlan& plan) {
+  constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
+  const double length = std::sqrt(plan.mesh.total_area() / plan.quads);
+  if (crowding(plan.mesh, plan.features, plan.quads, length) <= kTooCrowded) return false;
+  std::vector<char> is_kept = plan.is_given;
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_kept[h] = 1;
+  FeatureGraph fewer;
+  std::vector<char> remains;
+  for (const double gap : kGaps) {
+    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
+    fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+    if (crowding(plan.mesh, fewer, plan.quads, length) <= kRoomy) break;
+  }
+  std::vector<char> gone(plan.features.curves.size(), 0);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && !remains[h]) gone[plan.features.halfedge_curve[h]] = 1;
+  const int count = static_cast<int>(std::count(gone.begin(), gone.end(), 1));
+  plan.given_way += count;
+  plan.features = std::move(fewer);
+  return count > 0;
 }
 
 double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch) {
@@ -143,28 +213,23 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.mesh = std::move(fine.mesh);
   plan.guides = guides_on_edges(plan.mesh, fine, marked.guides);
   FeatureOptions features = feature_options(options, plan.length);
+  plan.is_given = on_edges(plan.mesh, fine.marked_edges);
   features.marked_edges = std::move(fine.marked_edges);
   features.corners = seam_ends(plan.mesh, options.symmetry.planes);
-  std::vector<CountedChain> fine_chains = chains;
+  plan.asked_chains = chains;
   for (std::size_t i = 0; i < chains.size(); ++i) {
-    fine_chains[i].edges = std::move(fine.chains[i]);
-    for (const int v : chain_ends(fine_chains[i])) features.corners.push_back(v);
+    plan.asked_chains[i].edges = std::move(fine.chains[i]);
+    for (const int v : chain_ends(plan.asked_chains[i])) features.corners.push_back(v);
   }
+  plan.corners = features.corners;
   plan.features = detect_features(plan.mesh, features, context);
-  if (!plan.guides.empty()) add_guide_corners(plan, features);
-  plan.chains = plan_curve_counts(plan.mesh, fine_chains, plan.features);
-  plan.curve_planes = seam_planes(plan.mesh, plan.features, options.symmetry.planes);
-  const std::vector<double> density = density_on(wishes, plan.mesh, plan.length);
+  if (!plan.guides.empty()) add_guide_corners(plan);
+  plan.density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
-  for (std::size_t v = 0; v < density.size(); ++v) plan.unlimited[v] = plan.length / density[v];
-  FeatureSizeOptions feature_size;
+  for (std::size_t v = 0; v < plan.density.size(); ++v) plan.unlimited[v] = plan.length / plan.density[v];
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
-  if (plan.length < kTiny * length) feature_size.least_ratio = kTinyRatio;
-  plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region);
-  plan.target = asked_lengths(*plan.index, plan.features, plan.length, density, feature_size, context);
-  shorten_for_counts(plan);
-  plan.needed = plan.target;
-  plan.quads = quads_for_lengths(plan.mesh, plan.target);
+  plan.least_ratio = plan.length < kTiny * length ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
+  plan_lengths(plan, options.symmetry.planes, context);
   return plan;
 }
 
@@ -176,6 +241,20 @@ void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
     plan.target = stretched(plan, stretch);
     plan.quads = quads_for_lengths(plan.mesh, plan.target);
   }
+}
+
+bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, PlaneSet mirror_planes, const RunContext& context) {
+  bool any = false;
+  for (ComponentPlan& plan : plans) any |= make_room(plan);
+  if (!any) return false;
+  for (ComponentPlan& plan : plans) plan_lengths(plan, mirror_planes, context);
+  balance_plans(plans, quads_asked);
+  return true;
+}
+
+void scale_plan(ComponentPlan& plan, double quads_factor) {
+  for (double& length : plan.target) length /= std::sqrt(quads_factor);
+  plan.quads *= quads_factor;
 }
 
 ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
@@ -190,6 +269,8 @@ ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool 
     grade_lengths(finer.mesh, longest, finer.target);
   }
   finer.quads = quads_for_lengths(finer.mesh, finer.target);
+  // Shorter edges at some places are paid for by the others.
+  if (!as_needed) scale_plan(finer, quads_factor * plan.quads / finer.quads);
   return finer;
 }
 

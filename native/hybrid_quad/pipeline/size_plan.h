@@ -26,6 +26,12 @@ struct ComponentPlan {
   std::vector<double> target;   ///< #V: asked edge length
   std::vector<double> needed;   ///< #V: the same before anything gave way for the number of quads
   double quads = 0;             ///< that fit
+  std::vector<char> is_given;   ///< 3 #F: features whatever the number of quads
+  std::vector<int> corners;     ///< vertices that are corners where a feature passes
+  std::vector<CountedChain> asked_chains;  ///< edges of that mesh that are to get certain numbers of quads
+  std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
+  double least_ratio = 0;       ///< see FeatureSizeOptions
+  int given_way = 0;            ///< feature curves by angle that gave way to the number of quads
 };
 
 /// Edges that are features whatever their angle.
@@ -46,8 +52,16 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
 /// ones too, by no more than twice.
 void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
 
-/// The plan with shorter edges: everywhere by a factor, and at some places.
-/// \param as_needed  nothing gives way for the number of quads
+/// Where features by angle leave no room for quads as large as the number asks for, because there are nearly as many curves
+/// as quads, those give way that crowd the most; lengths are planned and balanced anew.
+/// \returns whether any did
+bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, PlaneSet mirror_planes, const RunContext& context);
+
+/// The same lengths for more or fewer quads.
+void scale_plan(ComponentPlan& plan, double quads_factor);
+
+/// The plan for a number of quads that is larger by a factor, with shorter edges at some places.
+/// \param as_needed  nothing gives way for the number of quads, which is what it takes
 ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
                            const std::vector<LengthLimit>& limits);
 
