@@ -72,6 +72,29 @@ class CurveBuilder {
     }
   }
 
+  /// Curves that meet in a corner must give it one sign. They do where the parameterization has its corners at integers; where it
+  /// has not, each curve rounds in a chart of its own: then the first curve's sign holds, and the others change theirs and, where
+  /// that takes an odd number of edges instead of an even one, get one more.
+  void agree_on_corners() {
+    std::vector<int> sign(surface_.mesh.vertex_count(), -1);  // 0 or 1
+    for (int c = 0; c < static_cast<int>(out_.curves.size()); ++c) {
+      const FeatureCurve& curve = surface_.features.curves[c];
+      if (curve.closed) continue;
+      auto& coordinates = out_.curves[c];
+      const auto sign_at = [&](std::int64_t s) { return static_cast<int>((s / kGridUnit + coordinates.parity) & 1); };
+      int& start = sign[curve.vertices.front()];
+      if (start < 0) start = sign_at(coordinates.position.front());
+      if (start != sign_at(coordinates.position.front())) coordinates.parity ^= 1;
+      int& end = sign[curve.vertices.back()];
+      if (end < 0) end = sign_at(coordinates.position.back());
+      if (end == sign_at(coordinates.position.back())) continue;
+      locate_edges(c);
+      interpolate(coordinates.position, 0, static_cast<int>(coordinates.position.size()) - 1,
+                  coordinates.position.back() + kGridUnit);
+      ++out_.altered_counts;
+    }
+  }
+
   void build(int id) {
     const FeatureCurve& curve = surface_.features.curves[id];
     locate_edges(id);
@@ -210,6 +233,7 @@ CurveCoordinates build_curve_coordinates(const WorkingSurface& surface, const Fr
   out.is_altered.assign(surface.mesh.halfedge_count(), 0);
   CurveBuilder builder(surface, frames, param, out);
   for (int c = 0; c < static_cast<int>(out.curves.size()); ++c) builder.build(c);
+  builder.agree_on_corners();
   builder.widen_short_loops();
   return out;
 }
