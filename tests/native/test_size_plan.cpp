@@ -89,13 +89,13 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
     return plans[0].features.curves.size();
   };
   EXPECT_EQ(features_for(400, {}), 12u);
-  EXPECT_LT(features_for(20, {}), 12u);
+  EXPECT_LT(features_for(16, {}), 12u);
   MarkedEdges all;
   const FeatureGraph features = detect_features(slab, FeatureOptions{}, RunContext{});
   for (int h = 0; h < slab.halfedge_count(); ++h)
     if (features.is_feature(h) && slab.opposite(h) < h) all.ends.push_back({slab.from(h), slab.to(h)});
   all.guides.assign(all.ends.size(), -1);
-  EXPECT_EQ(features_for(20, all), 12u);
+  EXPECT_EQ(features_for(16, all), 12u);
 }
 
 TEST(CountBudget, WhatOneTakesTheOthersPay) {
