@@ -134,16 +134,15 @@ def run_and_judge(
     return outcome
 
 
-def manifold_models(folder: Path) -> Iterator[Path]:
-    """The models that an index beside them says are manifold; without an index, all."""
+def models_of(folder: Path) -> Iterator[tuple[Path, bool]]:
+    """Models with whether an index beside them says that they are manifold surfaces; without an index all are taken for that."""
     index = folder / "index.csv"
     if not index.exists():
-        yield from sorted(folder.glob("*.obj"))
+        yield from ((path, True) for path in sorted(folder.glob("*.obj")))
         return
     with index.open() as file:
         for row in csv.DictReader(file):
-            if row["edge_mf"] == row["vert_mf"] == "y":
-                yield folder / f"{row['name']}.obj"
+            yield folder / f"{row['name']}.obj", row.get("edge_mf") == row.get("vert_mf") == "y"
 
 
 @dataclass

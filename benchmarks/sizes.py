@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from runs import COLLECTION, ROOT, Limits, Outcome, Run, manifold_models, run_and_judge
+from runs import COLLECTION, ROOT, Limits, Outcome, Run, models_of, run_and_judge
 
 import hybrid_quad
 from hybrid_quad.core.mesh_arrays import FloatArray, IntArray
@@ -241,7 +241,7 @@ def main() -> int:
             "",
         ]
     if "counts" in arguments.tables:
-        paths = smooth if arguments.only else list(manifold_models(arguments.models))
+        paths = smooth if arguments.only else [path for path, is_clean in models_of(arguments.models) if is_clean]
         lines += count_rows(paths, list(arguments.counts), arguments.out, arguments.seconds)
     text = "\n".join(lines) + "\n"
     (arguments.out / "sizes.md").write_text(text)

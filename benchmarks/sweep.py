@@ -18,7 +18,7 @@ from pathlib import Path
 
 import table
 from hybrid_quad.core import native
-from runs import BAD, COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+from runs import BAD, COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, models_of, run_and_judge
 from variants import VARIANTS, arguments_of
 
 SECONDS_FOR_10000 = 60.0  # quads; also the least that a run may take
@@ -126,13 +126,7 @@ def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool]]:
         yield from ((path, True) for path in arguments.files)
         return
     for folder in arguments.models:
-        index = folder / "index.csv"
-        if not index.exists():
-            yield from ((path, True) for path in sorted(folder.glob("*.obj")))
-            continue
-        with index.open() as file:
-            for row in csv.DictReader(file):
-                yield folder / f"{row['name']}.obj", row.get("edge_mf") == row.get("vert_mf") == "y"
+        yield from models_of(folder)
 
 
 def build_id() -> str:

@@ -118,8 +118,10 @@ std::optional<ConvexPatch> PatchGrower::patch() const {
   const std::size_t n = border.size();
   for (std::size_t i = 0; i < n; ++i) {
     wanted.push_back(wanted_at(border[(i + n - 1) % n], border[i], border[(i + 1) % n]));
+    const int fewer = count_at(border[i]) - wanted[i];
     if (wanted[i] < 1 || wanted[i] > 2) return std::nullopt;
-    patch.irregular += wanted[i] != count_at(border[i]);
+    if (fewer > 0 && mesh_.valence(border[i]) - fewer < mesh_.least_valence(border[i])) return std::nullopt;
+    patch.irregular += fewer != 0;
   }
   const auto corner = std::find(wanted.begin(), wanted.end(), 1) - wanted.begin();
   patch.has_corners = corner < static_cast<std::ptrdiff_t>(n);

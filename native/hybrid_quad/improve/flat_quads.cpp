@@ -17,12 +17,18 @@ class FlatQuadOpener {
       for (const int v : mesh.quads[q]) quads_at_[v].push_back(q);
   }
 
+  /// In rounds, as a vertex that moves for one quad may flatten another.
   int run() {
+    constexpr int kRounds = 8;
     int opened = 0;
-    for (int q = 0; q < static_cast<int>(mesh_.quads.size()); ++q) {
-      if (area_vector(q).norm() > kLeastArea * edge_ * edge_) continue;
-      open(q);
-      ++opened;
+    for (int round = 0; round < kRounds; ++round) {
+      const int before = opened;
+      for (int q = 0; q < static_cast<int>(mesh_.quads.size()); ++q) {
+        if (area_vector(q).norm() > kLeastArea * edge_ * edge_) continue;
+        open(q);
+        ++opened;
+      }
+      if (opened == before) break;
     }
     return opened;
   }
@@ -46,11 +52,13 @@ class FlatQuadOpener {
     return sum.norm() > kLeastArea * edge_ * edge_ ? sum.normalized() : Vector3::UnitZ();
   }
 
-  /// Lengthens a diagonal at the end that is freer to move.
+  /// Lengthens a diagonal at the end that is freer to move. A corner that has to is no input vertex any more.
   void lengthen(int q, int i, const Vector3& step) {
     const int a = mesh_.quads[q][i], b = mesh_.quads[q][i + 2];
-    if (mesh_.kind[a] < mesh_.kind[b]) mesh_.positions[a] -= step;
-    else mesh_.positions[b] += step;
+    const bool at_first = mesh_.kind[a] < mesh_.kind[b];
+    const int v = at_first ? a : b;
+    mesh_.positions[v] += at_first ? Vector3(-step) : step;
+    if (mesh_.kind[v] == VertexKind::kCorner) mesh_.anchor[v] = -1;
   }
 
   void open(int q) {
