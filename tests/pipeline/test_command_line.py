@@ -17,6 +17,7 @@ from hybrid_quad.cli.main import main
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
+from support.children import heed_interrupts
 from support.mirroring import assert_mirrored
 
 
@@ -273,7 +274,7 @@ def test_interrupted_runs_leave_no_file(tmp_path, number, after):
     mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
     files = set(tmp_path.iterdir())
     command = [sys.executable, "-m", "hybrid_quad", "remesh", mesh, str(tmp_path / "out.ply"), "--quads", "20000"]
-    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
     time.sleep(after)
     child.send_signal(number)
     _, errors = child.communicate(timeout=20)

@@ -12,6 +12,7 @@ import pytest
 
 import hybrid_quad
 from support import surfaces
+from support.children import heed_interrupts
 
 BIG = surfaces.torus(400, 160)  # 128,000 triangles: some seconds of work
 
@@ -137,7 +138,7 @@ def test_an_interrupt_ends_the_run():
         "try: hybrid_quad.remesh(*mesh, quads=20000)\n"
         "except KeyboardInterrupt: print('interrupted')\n"
     )
-    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
     assert child.stdout.readline() == "ready\n"
     time.sleep(0.4)
     begin = time.monotonic()
