@@ -13,11 +13,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from runs import COLLECTION, JUDGE, ROOT, Limits, Run, run_and_judge
 
 from hybrid_quad.core.curve_counts import chains_of_edges
 from hybrid_quad.core.mesh_arrays import FloatArray, Polygons, surface_area
 from hybrid_quad.core.mesh_io import read_mesh
+from runs import COLLECTION, JUDGE, ROOT, Limits, Run, run_and_judge
 
 MODELS = (
     "c3d_fandisk",

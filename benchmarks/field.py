@@ -128,7 +128,10 @@ def _beside_peers(source: _Runs, models: Sequence[Path], peers: dict[str, Peer])
             f"| {peer.name} | {peer.irregular} | {'yes' if field <= peer.irregular else '**no**'} |"
         )
     share = fewer / counted if counted else 1.0
-    lines += ["", f"No more in the field than the best peer has in its mesh: {fewer} of {counted} models ({share:.0%})."]
+    lines += [
+        "",
+        f"No more in the field than the best peer has in its mesh: {fewer} of {counted} models ({share:.0%}).",
+    ]
     lines += _solutions(source.outcomes())
     return lines, share >= 0.7
 

@@ -16,8 +16,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import hybrid_quad
 import numpy as np
+
+import hybrid_quad
 from hybrid_quad.core.mesh_arrays import FloatArray, as_polygons
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
 from hybrid_quad.core.strokes import Stroke, joined_lines

@@ -13,11 +13,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from runs import COLLECTION, ROOT, Limits, Outcome, Run, models_of, run_and_judge
 
 import hybrid_quad
 from hybrid_quad.core.mesh_arrays import FloatArray, IntArray
 from hybrid_quad.core.mesh_io import read_mesh
+from runs import COLLECTION, ROOT, Limits, Outcome, Run, models_of, run_and_judge
 
 SMOOTH = (
     "c3d_rocker_arm",
@@ -41,7 +41,7 @@ class Surface:
         starts = np.cumsum(np.r_[0, polygons.sizes[:-1]])
         fans = [
             (polygons.vertices[s], polygons.vertices[s + i], polygons.vertices[s + i + 1])
-            for s, n in zip(starts, polygons.sizes)
+            for s, n in zip(starts, polygons.sizes, strict=False)
             for i in range(1, n - 1)
         ]
         self.triangles: IntArray = np.array(fans)
@@ -53,7 +53,7 @@ class Surface:
         self.edges: IntArray = np.unique(sides, axis=0)
         self.edge_length = np.linalg.norm(np.subtract(*self.vertices[self.edges.T]), axis=1)
         self._around: list[list[tuple[int, float]]] = [[] for _ in self.vertices]
-        for (a, b), length in zip(self.edges.tolist(), self.edge_length.tolist()):
+        for (a, b), length in zip(self.edges.tolist(), self.edge_length.tolist(), strict=False):
             self._around[a].append((b, length))
             self._around[b].append((a, length))
 
@@ -217,8 +217,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--models", type=Path, default=COLLECTION, help="folder of the models (default %(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "sizes")
-    parser.add_argument("--tables", nargs="+", choices=("density", "chord", "counts"), default=("density", "chord", "counts"))
-    parser.add_argument("--quads", type=int, default=3000, help="asked where a density is painted (default %(default)s)")
+    parser.add_argument(
+        "--tables", nargs="+", choices=("density", "chord", "counts"), default=("density", "chord", "counts")
+    )
+    parser.add_argument(
+        "--quads", type=int, default=3000, help="asked where a density is painted (default %(default)s)"
+    )
     parser.add_argument("--counts", type=int, nargs="+", default=COUNTS)
     parser.add_argument("--only", nargs="+", help="names of models instead of all, and instead of the smooth ones")
     parser.add_argument("--seconds", type=float, default=150.0, help="limit of a run for the table of counts")

@@ -15,15 +15,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from runs import COLLECTION, ROOT
 
 import hybrid_quad
 from hybrid_quad.core.mesh_arrays import Polygons
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
+from runs import COLLECTION, ROOT
 
 sys.path.append(str(ROOT / "tests"))
-from support.mirroring import assert_mirrored, assert_seam  # noqa: E402
+from support.mirroring import assert_mirrored, assert_seam
 
 HEADER = "| model | asked | planes | deviation x % max (mean) | quads (asked) | valid | exact mirror image | seam |"
 

@@ -160,7 +160,9 @@ def hard_guides(samples: int) -> Panels:
         strokes = [hybrid_quad.Stroke(line, 1.0, kind) for line in lines]
         result = _remesh(model, quads=1500, sharp_angle=None, strokes=strokes)
         panels.draw_result(result, lines=lines, cones=True)
-        print("   ", [{k: g[k] for k in ("kind", "met", "edges", "distance", "angle")} for g in result.report["guides"]])
+        print(
+            "   ", [{k: g[k] for k in ("kind", "met", "edges", "distance", "angle")} for g in result.report["guides"]]
+        )
     return panels
 
 
@@ -261,7 +263,20 @@ def symmetry(samples: int) -> Panels:
 
 PICTURES: dict[str, Callable[[int], Panels]] = {
     make.__name__: make
-    for make in (features, borders, guides, hard_guides, counts, field, density, adaptivity, fidelity, anisotropy, frames, symmetry)
+    for make in (
+        features,
+        borders,
+        guides,
+        hard_guides,
+        counts,
+        field,
+        density,
+        adaptivity,
+        fidelity,
+        anisotropy,
+        frames,
+        symmetry,
+    )
 }
 
 
@@ -282,7 +297,8 @@ def _remesh(model: Model, **options: object) -> hybrid_quad.RemeshResult:
     report = result.report
     names = {key: value for key, value in options.items() if np.isscalar(value)}
     print(
-        f"    {names}: {len(result.quads)} quads, {report['irregular_vertices']} irregular ({report['field_singularities']} in the field), "
+        f"    {names}: {len(result.quads)} quads, {report['irregular_vertices']} irregular "
+        f"({report['field_singularities']} in the field), "
         f"mean SJ {report['scaled_jacobian']['mean']:.3f}, mean distance {report['mean_distance_percent']:.3f} %",
         flush=True,
     )
@@ -384,8 +400,9 @@ def _edges(faces: object) -> np.ndarray:
 
 def _border(faces: list[tuple[int, ...]], inside: np.ndarray) -> np.ndarray:
     """Edges between faces inside and faces outside."""
-    ours, others = _edges([f for f, i in zip(faces, inside, strict=True) if i]), _edges(
-        [f for f, i in zip(faces, inside, strict=True) if not i]
+    ours, others = (
+        _edges([f for f, i in zip(faces, inside, strict=True) if i]),
+        _edges([f for f, i in zip(faces, inside, strict=True) if not i]),
     )
     common = set(map(tuple, ours.tolist())) & set(map(tuple, others.tolist()))
     return np.array(sorted(common), int)

@@ -17,15 +17,15 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from stage import FEATURES, FEWER, MORE, SURFACE, Stage, save_side_by_side, unit  # noqa: E402
+from stage import FEATURES, FEWER, MORE, SURFACE, Stage, save_side_by_side, unit
 
-import hybrid_quad  # noqa: E402
-from hybrid_quad.blender import edge_marks  # noqa: E402
-from hybrid_quad.blender.mesh_source import read_source  # noqa: E402
-from hybrid_quad.blender.remesh_task import prepare_task  # noqa: E402
-from hybrid_quad.core.mesh_io import write_mesh  # noqa: E402
-from hybrid_quad.core.remesh import remesh_with_options  # noqa: E402
-from hybrid_quad.core.snapshots import Snapshot  # noqa: E402
+import hybrid_quad
+from hybrid_quad.blender import edge_marks
+from hybrid_quad.blender.mesh_source import read_source
+from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.core.mesh_io import write_mesh
+from hybrid_quad.core.remesh import remesh_with_options
+from hybrid_quad.core.snapshots import Snapshot
 
 CROSS = (0.02, 0.10, 0.20)
 

@@ -141,7 +141,12 @@ def test_the_batch_command_takes_axes(tmp_path):
     source.hybrid_quad.symmetry_axes = (False, True, False)
     out, report = tmp_path / "out.blend", tmp_path / "r.json"
     arguments = ["--object", "Cube", "--output", str(out), "--report", str(report), "--quiet"]
-    for given, planes in (((), "y"), (("--symmetry", "xz"), "xz"), (("--symmetry", "auto"), "xyz"), (("--symmetry", "none"), "")):
+    for given, planes in (
+        ((), "y"),
+        (("--symmetry", "xz"), "xz"),
+        (("--symmetry", "auto"), "xyz"),
+        (("--symmetry", "none"), ""),
+    ):
         source.hide_set(False)
         activate(source)
         assert command.main([*arguments, *given]) == 0

@@ -1,5 +1,7 @@
 """Chains of edges with a number: how they are read, checked, and found in an attribute of edges."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from hybrid_quad.core.mesh_io import MeshFileError, read_counts
 
 
 def _edges_of(path):
-    return {frozenset(pair) for pair in zip(path, path[1:], strict=False)}
+    return {frozenset(pair) for pair in itertools.pairwise(path)}
 
 
 def test_edges_of_one_number_are_one_chain_whatever_their_order():

@@ -15,7 +15,27 @@ _DEV = os.environ.get("HQ_MODELS")
 COLLECTION = (Path(_DEV).parent if _DEV else Path(__file__).resolve().parents[3] / "shared" / "meshes") / "bad"
 
 # What each of these does to a run is settled in a moment; the others take minutes together.
-QUICK = tuple("m15 m16 m17 m18 m19 m20 m21 m22 m23 m38 m39 m41 m43 m44 r01 r15 r19".split())
+QUICK = tuple(
+    [
+        "m15",
+        "m16",
+        "m17",
+        "m18",
+        "m19",
+        "m20",
+        "m21",
+        "m22",
+        "m23",
+        "m38",
+        "m39",
+        "m41",
+        "m43",
+        "m44",
+        "r01",
+        "r15",
+        "r19",
+    ]
+)
 NO_ELEMENTS = {"empty_mesh", "no_area", "coordinates_too_coarse"}  # the whole mesh is at fault
 
 
@@ -133,7 +153,7 @@ def test_tiny_parts_do_not_take_many_times_the_asked_quads():
 
 def test_what_is_odd_but_possible_is_listed_and_left():
     vertices, faces = surfaces.sphere(4)
-    other = np.concatenate([vertices, vertices + [0.7, 0.1, 0.2]]), np.concatenate([faces, faces + len(vertices)])
+    other = np.concatenate([vertices, [*vertices, 0.7, 0.1, 0.2]]), np.concatenate([faces, faces + len(vertices)])
     (found,) = hybrid_quad.check(*other)
     assert (found.code, found.element_kind, found.kept, found.repairable) == ("self_intersection", "face", True, True)
     assert 0 < len(found) < len(other[1])

@@ -66,7 +66,9 @@ def test_a_loop_may_cross_a_sharp_edge():
     vertices, faces = surfaces.box(8)
     low, high = np.min(vertices, axis=0), np.max(vertices, axis=0)
     middle = (low + high) / 2
-    line = np.array([[low[0] + 0.3, middle[1], high[2]], [high[0], middle[1], high[2]], [high[0], middle[1], low[2] + 0.3]])
+    line = np.array(
+        [[low[0] + 0.3, middle[1], high[2]], [high[0], middle[1], high[2]], [high[0], middle[1], low[2] + 0.3]]
+    )
     result = hybrid_quad.remesh(vertices, faces, quads=600, strokes=[Stroke(line, kind="loop")])
     assert_sound(result, faces)
     assert result.report["guides"][0]["met"]

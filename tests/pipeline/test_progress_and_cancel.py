@@ -138,7 +138,9 @@ def test_an_interrupt_ends_the_run():
         "try: hybrid_quad.remesh(*mesh, quads=20000)\n"
         "except KeyboardInterrupt: print('interrupted')\n"
     )
-    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
+    child = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
+    )
     assert child.stdout.readline() == "ready\n"
     time.sleep(0.4)
     begin = time.monotonic()

@@ -121,9 +121,7 @@ def test_half_a_surface_becomes_a_whole_one():
     assert result.vertices[:, 2].min() == pytest.approx(-3)
 
 
-@pytest.mark.parametrize(
-    ("shift", "code"), [((3, 0, 0), "symmetry_plane_missed"), ((-3, 0, 0), "symmetry_side_empty")]
-)
+@pytest.mark.parametrize(("shift", "code"), [((3, 0, 0), "symmetry_plane_missed"), ((-3, 0, 0), "symmetry_side_empty")])
 def test_a_plane_beside_the_surface_is_refused(shift, code):
     vertices, faces = surfaces.torus()
     with pytest.raises(hybrid_quad.InputError) as caught:

@@ -161,7 +161,12 @@ def test_the_command_line_takes_a_density_and_settings(tmp_path):
     settings = ["--field-smoothness", "0.7", "--adaptivity", "0.2", "--anisotropy", "1.5", "--size-fidelity", "0.6"]
     assert main([*arguments, *settings, "--no-sharp", "--quiet"]) == 0
     options = json.loads(report.read_text())["options"]
-    assert [options[name] for name in ("field_smoothness", "adaptivity", "anisotropy", "size_fidelity")] == [0.7, 0.2, 1.5, 0.6]
+    assert [options[name] for name in ("field_smoothness", "adaptivity", "anisotropy", "size_fidelity")] == [
+        0.7,
+        0.2,
+        1.5,
+        0.6,
+    ]
     points = np.array([line.split()[1:] for line in target.read_text().splitlines() if line.startswith("v ")], float)
     assert (points[:, 0] > 0.3).sum() > 1.5 * (points[:, 0] < -0.3).sum()
 

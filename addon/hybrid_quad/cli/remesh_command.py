@@ -8,8 +8,6 @@ import signal
 import time
 from typing import Any
 
-import numpy as np
-
 from .. import __version__
 from ..core import mesh_io, report
 from ..core.errors import Cancelled, InputError, InternalError
@@ -142,7 +140,9 @@ def add_to(commands: Any) -> None:
         "--threads", type=int, default=0, metavar="N", help="default: all; the result does not depend on it"
     )
     parser.add_argument("--time-limit", type=float, metavar="SECONDS", help="stop with status 4 after this time")
-    parser.add_argument("--memory-limit", type=float, metavar="MB", help="stop with status 4 where more memory is taken")
+    parser.add_argument(
+        "--memory-limit", type=float, metavar="MB", help="stop with status 4 where more memory is taken"
+    )
     parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
     parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")

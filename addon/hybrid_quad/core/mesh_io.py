@@ -8,6 +8,7 @@ reordered, except those of STL, which has none of its own.
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import sys
 import tempfile
@@ -187,7 +188,7 @@ def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
             except ValueError:
                 raise MeshFileError(f"{path}: {line.strip()!r} is no line of vertices") from None
             places = [index - 1 if index >= 0 else latest + index for index in indices]
-            pairs += zip(places, places[1:], strict=False)
+            pairs += itertools.pairwise(places)
     return _as_int32([place for pair in pairs for place in pair]).reshape(-1, 2)
 
 

@@ -312,13 +312,12 @@ def _symmetry_center(points: FloatArray, options: RemeshOptions) -> FloatArray |
     if not options.symmetry or options.symmetry_center == "origin" or not len(points):
         return None
     if options.symmetry_center == "bounds":
-        return 0.5 * (points.min(axis=0) + points.max(axis=0))
+        middle: FloatArray = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        return middle
     return np.array(options.symmetry_center, np.float64)
 
 
-def _require_enough_length(
-    points: FloatArray, polygons: Polygons, options: RemeshOptions, density: FloatArray
-) -> None:
+def _require_enough_length(points: FloatArray, polygons: Polygons, options: RemeshOptions, density: FloatArray) -> None:
     if options.edge_length is None or options.chord_error is not None:
         return
     expected = surface_area(points, polygons) / options.edge_length**2
