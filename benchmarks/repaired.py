@@ -73,7 +73,7 @@ def with_edges_apart(mesh: Snapshot) -> tuple[FloatArray, list[list[int]]]:
 
 def moved_apart(points: FloatArray) -> FloatArray:
     """Points of which no two are in one place."""
-    _, _place, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    _, inverse = np.unique(points, axis=0, return_inverse=True)
     inverse = inverse.reshape(-1)
     order = np.argsort(inverse, kind="stable")
     first = np.flatnonzero(np.diff(inverse[order], prepend=-1))

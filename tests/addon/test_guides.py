@@ -235,7 +235,7 @@ def _blender_matrix(matrix: np.ndarray):
 
 def test_guide_objects_say_what_their_lines_are_for():
     obj = add_grid(cells=30)
-    loop, ring = _mesh_line(_line_points()), _curve("POLY", [*_line_points(), 0, 0.3, 0])
+    loop, ring = _mesh_line(_line_points()), _curve("POLY", _line_points() + np.array([0, 0.3, 0]))
     loop["hybrid_quad_guide_kind"] = "loop"
     collection = bpy.data.collections.new("Lines")
     bpy.context.scene.collection.children.link(collection)
