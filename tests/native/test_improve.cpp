@@ -503,6 +503,21 @@ TEST(Requadrangulate, LeavesLockedQuadsAlone) {
   EXPECT_EQ(piece.mesh.extract().quads, quads.quads);
 }
 
+TEST(Requadrangulate, FillsForAnyMeasure) {
+  const Surface surface(test::flat_grid(10, 10));
+  const QuadMesh quads = pillowed_sheet(surface, 8);
+  Workpiece piece(quads, surface.mesh, surface.features, *surface.index);
+  piece.bind_all();
+  Smoother smoother(piece, {});
+  const int v = quads.quads[4 * 8 + 4][0];
+  const auto none_is_better = [](const std::vector<int>&) { return 0.0; };
+  EXPECT_FALSE(requadrangulate_around(piece, smoother, v, none_is_better, 0.5));
+  EXPECT_EQ(piece.mesh.extract().quads, quads.quads);
+  const auto fewer = [](const std::vector<int>& around) { return -static_cast<double>(around.size()); };
+  EXPECT_TRUE(requadrangulate_around(piece, smoother, v, fewer, 0.5));
+  EXPECT_LT(piece.mesh.extract().quads.size(), quads.quads.size());
+}
+
 TEST(ConvexPatch, StopsAtFeaturesAndClosesNotches) {
   const Surface surface(test::flat_grid(10, 10));
   QuadMesh quads = sheet(6, 6);

@@ -69,11 +69,11 @@ bool PatchGrower::fill_notches() {
   return true;
 }
 
-/// Whether there are two vertices that could be regular, without which no other quads are better.
+/// Whether there are vertices enough that could be regular: with less than two no other quads are better.
 bool PatchGrower::holds_irregular_vertices(const std::vector<int>& vertices) const {
   int count = 0;
   for (const int v : vertices) count += valence_cost(mesh_, v) > 0.5;
-  return count > 1;
+  return count >= least_irregular_;
 }
 
 /// Quads that the patch should have at border vertex v between its neighbours along the border.

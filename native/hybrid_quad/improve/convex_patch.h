@@ -21,13 +21,15 @@ struct ConvexPatch {
 /// A growing set of quads around some vertices.
 class PatchGrower {
  public:
-  PatchGrower(const EditMesh& mesh, int most_quads) : mesh_(mesh), most_quads_(most_quads) {}
+  /// \param least_irregular  vertices that could be more regular, without which a set is no patch
+  PatchGrower(const EditMesh& mesh, int most_quads, int least_irregular = 2)
+      : mesh_(mesh), most_quads_(most_quads), least_irregular_(least_irregular) {}
 
   /// Starts with the quads around v. \returns whether there is room to grow
   bool start(int v);
   /// Adds all quads that touch the set and that no feature keeps apart.
   bool grow();
-  /// The set as a patch; nothing where it is no disk, its border is not convex, or it holds no two irregular vertices.
+  /// The set as a patch; nothing where it is no disk, its border is not convex, or it holds too few irregular vertices.
   std::optional<ConvexPatch> patch() const;
 
  private:
@@ -39,7 +41,7 @@ class PatchGrower {
   bool holds_irregular_vertices(const std::vector<int>& vertices) const;
 
   const EditMesh& mesh_;
-  int most_quads_;
+  int most_quads_, least_irregular_;
   std::vector<int> quads_;
   std::vector<char> taken_;  ///< by quad
   std::size_t looked_at_ = 0;  ///< quads whose vertices turn nowhere inwards

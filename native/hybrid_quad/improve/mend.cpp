@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/sequence_search.h"
 #include "hybrid_quad/improve/trial.h"
 #include "hybrid_quad/quality/quality.h"
@@ -27,13 +28,14 @@ class Mender {
   bool mend(int q) {
     for (const int rings : {0, 1, 2})
       if (move_vertices(q, rings)) return true;
-    return change_neighbours(q, kLikely) || change_neighbours(q, kFar);
+    return change_neighbours(q, kLikely) || change_neighbours(q, kFar) || fill_anew(q);
   }
 
   bool exhausted() const { return search_.exhausted(); }
 
  private:
   static constexpr int kEffort = 100;
+  static constexpr double kFewer = 0.5;
   static constexpr SearchLimits kLikely{1, 30, -30, 400, 1, 40}, kFar{2, 30, -30, 4000, 12, 120};
 
   std::array<Vector3, 4> corners(int q) const {
@@ -57,7 +59,6 @@ class Mender {
   }
 
   bool keep(Trial& trial) {
-    constexpr double kFewer = 0.5;
     search_.count_trial();
     return trial.keep(std::numeric_limits<double>::infinity(), kFewer);
   }
@@ -82,6 +83,15 @@ class Mender {
           piece_.bind_free(v, Vector3::Zero());
         }
     return keep(trial);
+  }
+
+  bool fill_anew(int q) {
+    const EditMesh::Quad around = piece_.mesh.quad(q);
+    for (const int v : around) {
+      search_.count_trial();
+      if (requadrangulate_around(piece_, smoother_, v, measure(), kFewer)) return true;
+    }
+    return false;
   }
 
   Vector3 mean_of_neighbours(int v) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "hybrid_quad/improve/convex_patch.h"
 #include "hybrid_quad/improve/patch_pattern.h"
@@ -15,8 +16,15 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr int kMostQuads = 64;
 constexpr std::size_t kMostPatterns = 4;
+
+/// What patches are filled anew for.
+struct Purpose {
+  int most_quads = 64;
+  int least_irregular = 2, more_irregular = -1;  ///< in a patch; afterwards at most as many more
+  Trial::Measure measure = {};                   ///< empty: shape, and that the surface stays near
+  double good_enough = 0.7, gain = 0, promising = 0.05;
+};
 
 
 /// The fewest irregular vertices inside any quads with that border.
@@ -29,14 +37,15 @@ int fewest_irregular(const ConvexPatch& patch, const std::vector<int>& lengths) 
 
 class Requadrangulator {
  public:
-  Requadrangulator(Workpiece& piece, Smoother& smoother)
-      : piece_(piece), smoother_(smoother), mesh_(piece.mesh), grower_(piece.mesh, kMostQuads) {}
+  Requadrangulator(Workpiece& piece, Smoother& smoother, Purpose purpose = {})
+      : piece_(piece), smoother_(smoother), mesh_(piece.mesh), purpose_(std::move(purpose)),
+        grower_(piece.mesh, purpose_.most_quads, purpose_.least_irregular) {}
 
   /// Tries larger and larger patches around v. \returns whether one was filled anew
   bool refill_around(int v) {
     for (bool room = grower_.start(v); room; room = grower_.grow()) {
       const std::optional<ConvexPatch> patch = grower_.patch();
-      if (patch && patch->irregular > 1 && refill(*patch)) return true;
+      if (patch && refill(*patch)) return true;
     }
     return false;
   }
@@ -46,7 +55,7 @@ class Requadrangulator {
     constexpr double kFewest = 0.6, kMost = 1.6;
     std::vector<int> lengths;
     for (const auto& side : patch.sides) lengths.push_back(static_cast<int>(side.size()) - 1);
-    if (patch.irregular <= fewest_irregular(patch, lengths)) return false;
+    if (fewest_irregular(patch, lengths) > patch.irregular + purpose_.more_irregular) return false;
     const double before = static_cast<double>(patch.quads.size());
     const std::vector<PatchPattern> patterns = patch.has_corners
                                                    ? patch_patterns(lengths, static_cast<int>(before), kMostPatterns)
@@ -87,14 +96,13 @@ class Requadrangulator {
   }
 
   bool try_pattern(const ConvexPatch& patch, const PatchPattern& pattern) {
-    constexpr double kGoodEnough = 0.7, kPromising = 0.05;
     std::vector<int> vertices = border_of(patch);
     const std::vector<Vector3> positions = spread(pattern, vertices);
-    if (worst_of(pattern, positions) < kPromising) return false;
+    if (worst_of(pattern, positions) < purpose_.promising) return false;
     vertices.insert(vertices.end(), patch.inside.begin(), patch.inside.end());
-    Trial trial(piece_, smoother_, std::move(vertices), worst_if_near(patch));
+    Trial trial(piece_, smoother_, std::move(vertices), purpose_.measure ? purpose_.measure : worst_if_near(patch));
     replace(patch, pattern, positions);
-    return trial.keep(kGoodEnough, 0);
+    return trial.keep(purpose_.good_enough, purpose_.gain);
   }
 
   /// The quality of the worst quad, or the worst there is if the places of the patch's vertices, which are on the surface, are far
@@ -180,6 +188,7 @@ class Requadrangulator {
   Workpiece& piece_;
   Smoother& smoother_;
   EditMesh& mesh_;
+  Purpose purpose_;
   PatchGrower grower_;
 };
 
@@ -194,6 +203,12 @@ int requadrangulate_patches(Workpiece& piece, Smoother& smoother, const RunConte
     filled += patches.refill_around(v);
   }
   return filled;
+}
+
+bool requadrangulate_around(Workpiece& piece, Smoother& smoother, int v, const Trial::Measure& measure, double gain) {
+  constexpr int kMostQuads = 30;
+  const double always = std::numeric_limits<double>::infinity();
+  return Requadrangulator(piece, smoother, {kMostQuads, 0, 2, measure, always, gain, -1}).refill_around(v);
 }
 
 }  // namespace hybrid_quad

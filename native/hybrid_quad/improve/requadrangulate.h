@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/trial.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
@@ -11,5 +12,9 @@ namespace hybrid_quad {
 /// patch stay as they are.
 /// \returns number of patches filled anew
 int requadrangulate_patches(Workpiece& piece, Smoother& smoother, const RunContext& context);
+
+/// Fills a patch around v anew, with up to two irregular vertices more than it has, so that what `measure` says of the quads there
+/// (see Trial) grows by `gain`. \returns whether one was
+bool requadrangulate_around(Workpiece& piece, Smoother& smoother, int v, const Trial::Measure& measure, double gain);
 
 }  // namespace hybrid_quad
