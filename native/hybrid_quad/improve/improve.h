@@ -40,7 +40,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
 
 /// The last resort against quads without area (below 1e-10 of the squared mean edge length): a vertex or two of each move by a
 /// ten thousandth of the mean edge so that it has one, on the side to which the quads around it point. Free vertices go first,
-/// then those on curves. \returns number of quads opened
+/// then those on curves; a corner that has to move is no input vertex any more (anchor -1). \returns number of quads opened
 int open_flat_quads(QuadMesh& mesh);
 
 }  // namespace hybrid_quad

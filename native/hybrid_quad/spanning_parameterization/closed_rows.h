@@ -10,7 +10,8 @@
 namespace hybrid_quad {
 
 /// Loops of edges that generate the first homology of a surface, from a tree of its vertices and a tree of its faces that do
-/// not cross. A set of loops is a number with a bit for each.
+/// not cross (tree and cotree: Erickson and Whittlesey, Greedy optimal homotopy and homology generators, SODA 2005). A set of loops
+/// is a number with a bit for each.
 class GeneratingLoops {
  public:
   using Set = std::uint64_t;
