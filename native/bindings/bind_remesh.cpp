@@ -122,6 +122,18 @@ py::list list_of_stages(const std::vector<StageRecord>& stages) {
   return result;
 }
 
+py::dict dict_of_loops(const EdgeLoopSummary& loops) {
+  py::dict out;
+  out["closed"] = loops.closed;
+  out["open"] = loops.open;
+  out["longest"] = loops.longest;
+  out["median_length"] = loops.median_length;
+  out["self_crossing"] = loops.self_crossing;
+  out["spirals"] = loops.spirals;
+  out["longest_spiral"] = loops.longest_spiral;
+  return out;
+}
+
 py::dict dict_of_field(const FieldRecord& field) {
   const auto solution = [](int quarters, int kept) {
     py::dict out;
@@ -162,6 +174,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["features_given_way"] = report.features_given_way;
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;
+  result["edge_loops"] = dict_of_loops(report.edge_loops);
   result["scaled_jacobian"] = jacobian;
   result["hausdorff_percent"] = report.hausdorff_percent;
   result["mean_distance_percent"] = report.mean_distance_percent;

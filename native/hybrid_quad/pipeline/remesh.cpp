@@ -176,6 +176,7 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
   r.scaled_jacobian_p1 = shape.scaled_jacobian_p1;
   r.scaled_jacobian_min = shape.scaled_jacobian_min;
   r.irregular_vertices = shape.irregular_vertices;
+  r.edge_loops = edge_loops_of(result.mesh);
   const SurfaceDistance distance = surface_distance(result.mesh, whole, context);
   r.hausdorff_percent = distance.hausdorff();
   r.mean_distance_percent = distance.mean;

@@ -9,6 +9,7 @@
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/periodic_field/periodic_field.h"
+#include "hybrid_quad/quality/edge_loops.h"
 #include "hybrid_quad/symmetry/symmetry.h"
 
 namespace hybrid_quad {
@@ -131,6 +132,7 @@ struct RemeshReport {
   int features_given_way = 0;            ///< feature curves by angle that gave way to the number of quads
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
+  EdgeLoopSummary edge_loops;
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features

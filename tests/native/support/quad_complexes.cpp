@@ -20,8 +20,8 @@ QuadComplex from_gluing(std::vector<int> opposite, const std::vector<Vector3>& d
   return c;
 }
 
-/// n x m quads; columns wrap around, rows too if asked.
-QuadComplex wrapped(int n, int m, bool rows_wrap) {
+/// n x m quads; columns wrap around, rows too if asked, the last one to the first one by `shift` quads further.
+QuadComplex wrapped(int n, int m, bool rows_wrap, int shift = 0) {
   std::vector<int> opposite(4 * n * m, -1);
   std::vector<Vector3> origin(4 * n * m);
   for (int j = 0; j < m; ++j)
@@ -30,7 +30,7 @@ QuadComplex wrapped(int n, int m, bool rows_wrap) {
       opposite[4 * q + 1] = 4 * right + 3;
       opposite[4 * right + 3] = 4 * q + 1;
       if (j + 1 < m || rows_wrap) {
-        const int up = ((j + 1) % m) * n + i;
+        const int up = j + 1 < m ? (j + 1) * n + i : (i + shift) % n;
         opposite[4 * q + 2] = 4 * up;
         opposite[4 * up] = 4 * q + 2;
       }
@@ -91,7 +91,19 @@ QuadComplex quad_grid(int n, int m) {
 }
 
 QuadComplex quad_tube(int n, int m) { return wrapped(n, m, false); }
-QuadComplex quad_torus(int n, int m) { return wrapped(n, m, true); }
+QuadComplex quad_torus(int n, int m, int shift) { return wrapped(n, m, true, shift); }
+
+QuadComplex quad_cone(int n) {
+  QuadComplex grid = quad_grid(n, n);
+  for (int i = 0; i < n; ++i) {
+    const int bottom = 4 * i, left = 4 * (i * n) + 3;
+    grid.opposite[bottom] = left;
+    grid.opposite[left] = bottom;
+  }
+  std::vector<Vector3> origin;
+  for (const int v : grid.vertex) origin.push_back(grid.positions[v]);
+  return from_gluing(std::move(grid.opposite), origin);
+}
 
 QuadComplex pillow() {
   std::vector<int> opposite(8);
