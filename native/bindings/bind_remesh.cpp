@@ -134,6 +134,21 @@ py::dict dict_of_loops(const EdgeLoopSummary& loops) {
   return out;
 }
 
+py::object dict_of_limit_fit(const LimitFitRecord& fit) {
+  if (!fit.is_fitted) return py::none();
+  const auto distance = [](const DirectedDistance& d) {
+    py::dict out;
+    out["mean"] = d.mean;
+    out["max"] = d.largest;
+    return out;
+  };
+  py::dict out;
+  out["before"] = distance(fit.before);
+  out["after"] = distance(fit.after);
+  out["held_back"] = fit.held_back;
+  return out;
+}
+
 py::dict dict_of_field(const FieldRecord& field) {
   const auto solution = [](int quarters, int kept) {
     py::dict out;
@@ -179,6 +194,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["hausdorff_percent"] = report.hausdorff_percent;
   result["mean_distance_percent"] = report.mean_distance_percent;
   result["feature_hausdorff_percent"] = report.feature_hausdorff_percent;
+  result["limit_distance_percent"] = dict_of_limit_fit(report.limit_fit);
   result["stages"] = list_of_stages(report.stages);
   result["warnings"] = report.warnings;
   result["defects"] = list_of_defects(report.defects);
@@ -219,6 +235,7 @@ py::dict default_options() {
   result["narrow_quads"] = options.narrow_quads;
   result["anisotropy"] = options.anisotropy;
   result["size_fidelity"] = options.size_fidelity;
+  result["fit_limit_surface"] = options.fit_limit_surface;
   result["solver"] = options.solver == PeriodicSolver::kMultilevel ? "multilevel" : "eigen";
   result["seed"] = RunContext{}.seed;
   return result;
@@ -261,7 +278,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                const DoubleArray& vertex_frames, const DoubleArray& face_frames,
                const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
-               const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
+               bool fit_limit_surface, const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
                double memory_limit, py::object progress,
                py::object cancel, py::object snapshot) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
@@ -284,6 +301,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.narrow_quads = narrow_quads;
         options.anisotropy = anisotropy;
         options.size_fidelity = size_fidelity;
+        options.fit_limit_surface = fit_limit_surface;
         options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), {time_limit, memory_limit});
@@ -309,7 +327,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("stroke_rings"), py::arg("density"), py::arg("vertex_frames"),
       py::arg("face_frames"), py::arg("curve_counts"), py::arg("field_smoothness"), py::arg("adaptivity"),
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
-      py::arg("size_fidelity"), py::arg("symmetry"), py::arg("solver"),
+      py::arg("size_fidelity"), py::arg("fit_limit_surface"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("progress").none(true),
       py::arg("cancel").none(true), py::arg("snapshot").none(true),
       "Quad mesh, feature edges and report of one run, as a dict.");

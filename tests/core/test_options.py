@@ -31,6 +31,7 @@ from hybrid_quad.core import native
         {"anisotropy": 0.5},
         {"anisotropy": math.inf},
         {"size_fidelity": 2.0},
+        {"fit_limit_surface": 1},
         {"symmetry": "xx"},
         {"symmetry": "w"},
         {"symmetry": "autox"},

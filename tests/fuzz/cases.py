@@ -268,6 +268,7 @@ def _options(vertices: np.ndarray, faces: Faces, random: np.random.Generator) ->
     maybe("field_smoothness", lambda: float(random.uniform(0, 1)))
     maybe("anisotropy", lambda: float(random.uniform(1, 10)))
     maybe("narrow_quads", lambda: 1)
+    maybe("fit_limit_surface", lambda: True, 0.1)
     maybe("size_fidelity", lambda: float(random.uniform(0, 1)))
     maybe("adaptivity", lambda: float(random.uniform(0, 1)))
     maybe("symmetry", lambda: _pick(random, ["x", "yz", "xyz", "auto"]), 0.08)

@@ -183,6 +183,31 @@ def test_the_command_line_takes_a_chord_error_or_a_count(tmp_path):
     assert (options["chord_error"], options["narrow_quads"]) == (0.03, 1)
 
 
+def test_a_limit_surface_on_the_input_and_how_near_it_comes(tmp_path):
+    vertices, faces = surfaces.torus()
+    source, target, report = (tmp_path / name for name in ("in.obj", "out.obj", "report.json"))
+    write_obj(source, vertices, faces)
+    arguments = ["remesh", str(source), str(target), "--quads", "500", "--quiet", "--report", str(report)]
+    assert main(arguments) == 0
+    assert json.loads(report.read_text())["limit_distance_percent"] is None
+    assert main([*arguments, "--fit-limit"]) == 0
+    made = json.loads(report.read_text())
+    assert made["options"]["fit_limit_surface"] is True
+    before, after = (made["limit_distance_percent"][when] for when in ("before", "after"))
+    assert after["mean"] < 0.25 * before["mean"]
+    result = hybrid_quad.remesh(vertices, faces, quads=500, fit_limit_surface=True)
+    assert_sound(result, faces)
+
+
+def test_edge_loops_of_a_torus_close():
+    vertices, faces = surfaces.torus()
+    loops = hybrid_quad.remesh(vertices, faces, quads=500, sharp_angle=None).report["edge_loops"]
+    assert loops["closed"] > 0 and loops["longest"] >= loops["median_length"] > 1
+    assert set(loops) == {
+        "closed", "open", "longest", "median_length", "self_crossing", "spirals", "longest_spiral",
+    }  # fmt: skip
+
+
 def test_a_density_file_that_does_not_fit_is_wrong_usage(tmp_path):
     vertices, faces = surfaces.sphere(4)
     source, file = tmp_path / "in.obj", tmp_path / "density.txt"

@@ -138,6 +138,12 @@ def _parser() -> argparse.ArgumentParser:
         "--narrow-quads", type=int, choices=(1, 2), help="least rows of quads in narrow strips between kept edges"
     )
     parser.add_argument(
+        "--fit-limit",
+        dest="fit_limit_surface",
+        action=argparse.BooleanOptionalAction,
+        help="move vertices so that a subdivision surface lies on the surface, or do not",
+    )
+    parser.add_argument(
         "--symmetry",
         metavar="xyz|auto|none",
         type=_symmetry,
@@ -273,6 +279,7 @@ _SAME_NAMES = (
     "field_smoothness",
     "anisotropy",
     "narrow_quads",
+    "fit_limit_surface",
 )
 
 

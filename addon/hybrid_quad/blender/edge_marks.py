@@ -153,6 +153,19 @@ def write(mesh: bpy.types.Mesh, edges: IntArray, values: EdgeValues) -> None:
             _write_store(mesh, store, of_edge)
 
 
+def crease(mesh: bpy.types.Mesh, edges: IntArray, vertices: npt.NDArray[np.int64]) -> None:
+    """Makes edges, given as vertex pairs, and vertices as sharp under a subdivision surface as can be."""
+    if len(edges):
+        store = next(store for store in _STORES if store.mark == CREASE)
+        of_edge = _read_store(mesh, store).astype(np.float32)
+        of_edge[_indices_of(mesh, edges)] = 1.0
+        _write_store(mesh, store, of_edge)
+    if len(vertices):
+        of_vertex = np.zeros(len(mesh.vertices), np.float32)
+        of_vertex[vertices] = 1.0
+        _vertex_creases(mesh).data.foreach_set("value", of_vertex)
+
+
 def add_sharp_by_angle(
     marks: MarkArray, vertices: FloatArray, polygons: Polygons, edges: IntArray, angle: float
 ) -> MarkArray:
@@ -204,6 +217,14 @@ def _write_store(mesh: bpy.types.Mesh, store: _Store, values: Any) -> None:
     if attribute is None:
         attribute = mesh.attributes.new(store.attribute, store.data_type, "EDGE")
     attribute.data.foreach_set("value", values)
+
+
+def _vertex_creases(mesh: bpy.types.Mesh) -> Any:
+    if bpy.app.version >= (4, 0):
+        return mesh.attributes.get("crease_vert") or mesh.attributes.new("crease_vert", "FLOAT", "POINT")
+    if hasattr(mesh, "vertex_creases_ensure"):  # Blender 3.6
+        return mesh.vertex_creases_ensure()
+    return mesh.vertex_creases.new()
 
 
 def _read_face_sets(mesh: bpy.types.Mesh) -> Any:

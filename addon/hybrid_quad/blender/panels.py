@@ -159,6 +159,7 @@ class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "narrow_quads")
         column.prop(settings, "field_smoothness")
         column.prop(settings, "anisotropy")
+        column.prop(settings, "fit_limit_surface")
 
 
 class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):

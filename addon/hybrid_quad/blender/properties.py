@@ -80,6 +80,12 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         min=1,
         max=2,
     )
+    fit_limit_surface: bpy.props.BoolProperty(
+        name="Fit Subdivision Surface",
+        description="Move vertices so that a Subdivision Surface modifier puts the surface where it was. Kept edges and corners "
+        "get creases",
+        default=False,
+    )
     use_sharp_angle: bpy.props.BoolProperty(
         name="Sharp Edges by Angle",
         description="Keep edges where the surface bends by more than the angle below",

@@ -12,7 +12,7 @@ from mathutils.bvhtree import BVHTree
 
 from ..core import report
 from ..core.errors import InternalError
-from ..core.remesh import RemeshResult
+from ..core.remesh import CORNER, RemeshResult
 from . import edge_marks
 from .mesh_source import MeshSource
 from .remesh_task import RemeshTask, marks_of_result
@@ -78,6 +78,8 @@ def _fill(mesh: bpy.types.Mesh, task: RemeshTask, result: RemeshResult) -> None:
     mesh.polygons.foreach_set("material_index", source.face_materials[nearest])
     mesh.polygons.foreach_set("use_smooth", source.face_smooth[nearest])
     edge_marks.write(mesh, *marks_of_result(task, result))
+    if task.options.fit_limit_surface:
+        edge_marks.crease(mesh, result.feature_edges, np.flatnonzero(result.vertex_kinds == CORNER))
     if hasattr(mesh, "use_auto_smooth") and source.face_smooth.any():
         # Before Blender 4.1 sharp edges show only with this; 180 degrees: only marked edges are sharp.
         mesh.use_auto_smooth = True

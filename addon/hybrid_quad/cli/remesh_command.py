@@ -111,6 +111,11 @@ def add_to(commands: Any) -> None:
         help="where sizes vary, 0: few irregular vertices, 1: the asked sizes (default %(default)s)",
     )
     parser.add_argument(
+        "--fit-limit",
+        action="store_true",
+        help="move vertices so that the Catmull-Clark limit surface, creased on features, lies on the surface",
+    )
+    parser.add_argument(
         "--density", metavar="FILE", help="a number for each vertex of IN: 2 asks for edges half as long as 1 does"
     )
     parser.add_argument(
@@ -197,6 +202,7 @@ def _options(arguments: argparse.Namespace) -> RemeshOptions:
             narrow_quads=arguments.narrow_quads,
             anisotropy=arguments.anisotropy,
             size_fidelity=arguments.size_fidelity,
+            fit_limit_surface=arguments.fit_limit,
             symmetry=arguments.symmetry,
             symmetry_center=_center(arguments.symmetry_center),
             solver=arguments.solver,

@@ -46,6 +46,9 @@ class RemeshOptions:
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
         Where sizes vary (`adaptivity`, density, frames): 0 keeps irregular vertices few, 1 keeps the asked sizes.
+    fit_limit_surface : bool
+        Move vertices off the surface so that the limit surface of the quads, subdivided by Catmull and Clark's rules with
+        sharp creases on features, lies on it.
     symmetry : str
         Planes about which the result is to be symmetric, exactly: letters of ``"xyz"``, each the direction in which the
         plane mirrors. ``"auto"``: those about which the surface itself is symmetric. ``""``: none.
@@ -73,6 +76,7 @@ class RemeshOptions:
     narrow_quads: int = 2
     anisotropy: float = 1.0
     size_fidelity: float = 0.5
+    fit_limit_surface: bool = False
     symmetry: str = ""
     symmetry_center: str | tuple[float, float, float] = "origin"
     solver: str = "multilevel"
@@ -114,6 +118,10 @@ class RemeshOptions:
             f"anisotropy must be between 1 and {MOST_ANISOTROPY}, not {self.anisotropy!r}",
         )
         _require(
+            isinstance(self.fit_limit_surface, bool),
+            f"fit_limit_surface must be True or False, not {self.fit_limit_surface!r}",
+        )
+        _require(
             isinstance(self.symmetry, str)
             and (self.symmetry == "auto" or len(set(self.symmetry) & set(AXES)) == len(self.symmetry)),
             f'symmetry must be "auto" or different letters of "{AXES}", not {self.symmetry!r}',
@@ -153,6 +161,7 @@ class RemeshOptions:
             "narrow_quads": int(self.narrow_quads),
             "anisotropy": float(self.anisotropy),
             "size_fidelity": float(self.size_fidelity),
+            "fit_limit_surface": self.fit_limit_surface,
             "symmetry": self.symmetry,
             "solver": self.solver,
             "seed": int(self.seed),

@@ -43,6 +43,8 @@ CancelCallback = Callable[[], bool]
 SnapshotCallback = Callable[[Snapshot], object]
 PathLike = str | os.PathLike[str]
 
+CORNER = 2  # of RemeshResult.vertex_kinds
+
 
 @dataclass(frozen=True, eq=False)
 class RemeshResult:
@@ -92,6 +94,7 @@ def remesh(
     narrow_quads: int = 2,
     anisotropy: float = 1.0,
     size_fidelity: float = 0.5,
+    fit_limit_surface: bool = False,
     symmetry: str = "",
     symmetry_center: str | tuple[float, float, float] = "origin",
     solver: str = "multilevel",
@@ -158,6 +161,10 @@ def remesh(
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.
     size_fidelity : float
         Where sizes vary: 0 keeps irregular vertices few, 1 keeps the asked sizes.
+    fit_limit_surface : bool
+        Move vertices off the surface so that the limit surface of the quads, subdivided by Catmull and Clark's rules with
+        infinitely sharp creases on feature edges and corners, lies on it. The report's ``limit_distance_percent`` says how
+        near it comes.
     symmetry : str
         Planes about which the result is symmetric, exactly: letters of ``"xyz"``, each the direction in which the plane
         mirrors. The positive side is kept, however symmetric the surface is; the report's ``symmetry`` says how far it is
@@ -210,6 +217,7 @@ def remesh(
         narrow_quads=narrow_quads,
         anisotropy=anisotropy,
         size_fidelity=size_fidelity,
+        fit_limit_surface=fit_limit_surface,
         symmetry=symmetry,
         symmetry_center=symmetry_center,
         solver=solver,

@@ -5,7 +5,9 @@
 #include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/mesh/segment_index.h"
 #include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -37,6 +39,22 @@ struct ImproveReport {
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
                             const SurfaceIndex* whole = nullptr);
+
+/// The Catmull-Clark limit surface of the quads against the surface, in scene units; `mean` is by area.
+struct LimitFitReport {
+  DirectedDistance before, after;  ///< from the limit surface to the surface
+  int held_back = 0;               ///< vertices that move less than they should, for quads around them would get bad
+};
+
+/// Moves vertices so that the Catmull-Clark limit surface of the quads lies on the surface, and the limit curves of feature
+/// edges, which are infinitely sharp creases, on the feature curves. Corners stay, as infinitely sharp vertices. By linear
+/// least squares between projections (Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, section 4; limit points
+/// by OpenSubdiv), with springs against the change. No quad becomes inverted, or bad (scaled Jacobian below 0.3) and worse
+/// than it was. The vertices then lie off the surface, on the outside of where it bends.
+/// \param curves  for each curve of the quads' feature edges its segments
+/// \pre `quads` is valid (violations_of)
+LimitFitReport fit_limit_surface(QuadMesh& quads, const SurfaceIndex& surface, const std::vector<SegmentIndex>& curves,
+                                 const RunContext& context);
 
 /// The last resort against quads without area (below 1e-10 of the squared mean edge length): a vertex or two of each move by a
 /// ten thousandth of the mean edge so that it has one, on the side to which the quads around it point. Free vertices go first,

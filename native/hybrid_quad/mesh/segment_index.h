@@ -21,6 +21,11 @@ class SegmentIndex {
 
   /// \returns segment = -1 where there are no segments
   SegmentPoint nearest(const Vector3& p) const;
+  /// Where a point of these segments is.
+  Vector3 position(const SegmentPoint& point) const {
+    const auto& s = segments_[point.segment];
+    return s[0] + point.fraction * (s[1] - s[0]);
+  }
   int segment_count() const { return static_cast<int>(segments_.size()); }
 
  private:

@@ -12,6 +12,7 @@
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/guided_input.h"
+#include "hybrid_quad/pipeline/limit_fit.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -314,7 +315,18 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     for (const int v : components[i].vertex)
       input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
     input_vertex.resize(plans[i].mesh.vertex_count(), -1);  // what halving long edges added; corners in folds, now and then
-    append(result, whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options), parts[i], input_vertex, images, guided);
+    QuadMesh quads = whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options);
+    if (options.fit_limit_surface) {
+      const double share = components[i].mesh.total_area() / area;
+      clock.measure("limit surface", [&] {
+        const RunContext fit_context = context.in_stage("limit surface", 0.97, 0.97);
+        const PlaneSet planes = domain.options.symmetry.planes;
+        const LimitFitReport fit = fit_component(parts[i], quads, plans[i].mesh, planes, whole, fit_context);
+        add_fit(report.limit_fit, fit, share, built.mesh.diagonal());
+      });
+      quads = whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options);
+    }
+    append(result, quads, parts[i], input_vertex, images, guided);
     singular_area += parts[i].singular_area;
     combinatorial_area += parts[i].combinatorial_area;
   }

@@ -10,6 +10,7 @@
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/periodic_field/periodic_field.h"
 #include "hybrid_quad/quality/edge_loops.h"
+#include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/symmetry/symmetry.h"
 
 namespace hybrid_quad {
@@ -56,6 +57,7 @@ struct RemeshOptions {
   PeriodicSolver solver = PeriodicSolver::kMultilevel;
   bool improve = true;
   bool fit = true;                 ///< let free vertices leave the surface a little so that the quads' faces lie nearer to it
+  bool fit_limit_surface = false;  ///< move vertices off the surface so that their Catmull-Clark limit surface lies on it
   SymmetryOptions symmetry;
 };
 
@@ -110,6 +112,14 @@ struct FieldRecord {
   int relaxed_kept = 0, smoothest_kept = 0;
 };
 
+/// How far the Catmull-Clark limit surface is from the input, where options.fit_limit_surface asks for it: in percent of the
+/// diagonal, before and after vertices moved.
+struct LimitFitRecord {
+  bool is_fitted = false;
+  DirectedDistance before, after;
+  int held_back = 0;  ///< vertices that moved less than they should, for quads around them would get bad
+};
+
 /// What became of a hard guide.
 struct GuideRecord {
   GuideKind kind = GuideKind::kLoop;
@@ -136,6 +146,7 @@ struct RemeshReport {
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features
+  LimitFitRecord limit_fit;
   SymmetryRecord symmetry;
   std::vector<CurveCountRecord> curve_counts;  ///< as options.curve_counts
   std::vector<GuideRecord> guides;       ///< one for each of options.strokes
