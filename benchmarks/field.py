@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import csv
 import json
-import re
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -20,9 +19,9 @@ from pathlib import Path
 from statistics import median
 
 from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
+from stored_peers import PEERS, stored_results
 from sweep import build_id, read_results
 
-PEERS = ROOT.parent / "shared" / "peers" / "README.md"
 COUNTED = """
 *Field*: vertices inside the surface around which the field turns by a quarter or more, on feature curves and off them.
 A cube's corner is one (three quads meet there whatever is done), as it is an irregular vertex of the mesh, and so is the
@@ -64,20 +63,10 @@ def main() -> int:
 def best_valid_peers(path: Path) -> dict[str, Peer]:
     """The valid result with the fewest irregular vertices for each model that has one, from the peers' table."""
     best: dict[str, Peer] = {}
-    if not path.exists():
-        return best
-    names: list[str] = []
-    for line in path.read_text().splitlines():
-        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if cells[0].startswith("model"):
-            names = cells[1:]
-        head = re.fullmatch(r"(\S+) \(\d+\)( s)?", cells[0])
-        if not head or not names:
-            continue
-        for name, cell in zip(names, cells[1:], strict=False):
-            result = re.match(r"(\d+) · (\d+) · ", cell)  # what is not valid begins otherwise
-            if result and (head[1] not in best or int(result[2]) < best[head[1]].irregular):
-                best[head[1]] = Peer(name, int(result[2]), bool(head[2]))
+    for model, of_model in stored_results(path).items():
+        valid = [Peer(name, result.irregular, result.sharp) for name, result in of_model.items() if result.valid]
+        if valid:
+            best[model] = min(valid, key=lambda peer: peer.irregular)
     return best
 
 

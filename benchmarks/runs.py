@@ -106,7 +106,7 @@ def run_and_judge(
     command += [*SETTINGS[run.setting], *run.arguments, "--threads", str(threads), "--report", str(report), "--quiet"]
     # The run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
-    measured = _measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)
+    measured = measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)
     outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
@@ -124,7 +124,7 @@ def run_and_judge(
     outcome.failed += _own_checks(reference, out)
     if judge is not None and judge.exists():
         judgement = folder / f"{run.name}.judge.json"
-        outcome.judgement = _judge(judge, run.quads, reference, out, judgement, limits.judge_seconds)
+        outcome.judgement = judged(judge, run.quads, reference, out, judgement, limits.judge_seconds)
         outcome.failed += outcome.judgement.get("failed", [])
     if reference != run.path and not outcome.failed:
         reference.unlink(missing_ok=True)
@@ -146,7 +146,9 @@ def models_of(folder: Path) -> Iterator[tuple[Path, bool]]:
 
 
 @dataclass
-class _Measured:
+class Measured:
+    """What a program took."""
+
     status: str  # "ok", "failed", "crash" or "timeout"
     message: str
     seconds: float
@@ -154,7 +156,8 @@ class _Measured:
     peak_mb: float
 
 
-def _measure(command: list[str], seconds: float, memory_mb: int) -> _Measured:
+def measure(command: list[str], seconds: float, memory_mb: int) -> Measured:
+    """Runs a program with limits, and takes the system's account of it."""
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
 
@@ -181,7 +184,7 @@ def _measure(command: list[str], seconds: float, memory_mb: int) -> _Measured:
         status, message = "crash", f"signal {-process.returncode} {message}"
     else:
         status = "failed" if process.returncode else "ok"
-    return _Measured(status, message[-2000:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+    return Measured(status, message[-2000:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
 _WHOLE_MESH = {"empty_mesh", "no_area", "malformed_faces", "coordinates_too_coarse"}  # no element of it is at fault
@@ -216,7 +219,8 @@ def _own_checks(source: Path, result: Path) -> list[str]:
     return failed
 
 
-def _judge(judge: Path, quads: int, source: Path, result: Path, report: Path, seconds: float) -> dict[str, Any]:
+def judged(judge: Path, quads: int, source: Path, result: Path, report: Path, seconds: float) -> dict[str, Any]:
+    """What the independent judge says of a result; `failed` names it where it says nothing."""
     command = [sys.executable, str(judge), str(source), str(result), "--target", str(quads), "--json", str(report)]
     report.unlink(missing_ok=True)
     try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import bmesh
 import bpy
 import numpy as np
 import numpy.typing as npt
@@ -222,9 +223,13 @@ def _write_store(mesh: bpy.types.Mesh, store: _Store, values: Any) -> None:
 def _vertex_creases(mesh: bpy.types.Mesh) -> Any:
     if bpy.app.version >= (4, 0):
         return mesh.attributes.get("crease_vert") or mesh.attributes.new("crease_vert", "FLOAT", "POINT")
-    if hasattr(mesh, "vertex_creases_ensure"):  # Blender 3.6
-        return mesh.vertex_creases_ensure()
-    return mesh.vertex_creases.new()
+    if not mesh.vertex_creases:  # which Python cannot make before Blender 3.6 but by a bmesh
+        edited = bmesh.new()
+        edited.from_mesh(mesh)
+        edited.verts.layers.crease.verify()
+        edited.to_mesh(mesh)
+        edited.free()
+    return mesh.vertex_creases[0]
 
 
 def _read_face_sets(mesh: bpy.types.Mesh) -> Any:

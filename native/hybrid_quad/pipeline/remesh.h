@@ -9,7 +9,6 @@
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/periodic_field/periodic_field.h"
-#include "hybrid_quad/quality/edge_loops.h"
 #include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/symmetry/symmetry.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "hybrid_quad/mesh/quad_complex.h"
-#include "hybrid_quad/mesh/quad_mesh.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -23,17 +23,6 @@ struct EdgeLoops {
 };
 EdgeLoops trace_edge_loops(const QuadComplex& complex);
 
-struct EdgeLoopSummary {
-  int closed = 0, open = 0;
-  int longest = 0;           ///< edges
-  double median_length = 0;  ///< edges
-  int self_crossing = 0;
-  int spirals = 0;
-  int longest_spiral = 0;    ///< edges
-};
 EdgeLoopSummary summary_of(const EdgeLoops& loops);
-
-/// Of an indexed mesh, whose corners end chains. \pre `mesh` is valid (violations_of)
-EdgeLoopSummary edge_loops_of(const QuadMesh& mesh);
 
 }  // namespace hybrid_quad

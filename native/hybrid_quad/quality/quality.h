@@ -24,6 +24,20 @@ struct ShapeQuality {
 
 ShapeQuality shape_quality(const QuadMesh& mesh);
 
+/// The edges as chains that go straight on at every vertex of four quads (of two along the boundary), to an irregular vertex, a
+/// corner or the boundary, or around to where they began.
+struct EdgeLoopSummary {
+  int closed = 0, open = 0;
+  int longest = 0;           ///< edges
+  double median_length = 0;  ///< edges
+  int self_crossing = 0;     ///< that pass a vertex twice
+  int spirals = 0;           ///< that pass beside themselves in the same direction, at most three quads across
+  int longest_spiral = 0;    ///< edges
+};
+
+/// \pre `mesh` is valid (violations_of)
+EdgeLoopSummary edge_loops_of(const QuadMesh& mesh);
+
 /// Whether a quad points against the surface: against a face at its nearest point and against all of it within a quarter of
 /// the quad's mean edge length beyond that, so that the far side of a thin sheet does not count.
 /// \param least_size  for quads with shorter edges (mean, scene units) it is not enough that a face comes so near: its middle
