@@ -4,12 +4,13 @@
 
 Meshes are those that scripts/sweep (`--ours`) and benchmarks/compare.py (`--peers`) leave in their folders. The best peer is the one
 with the fewest irregular vertices among valid results or, where there is none, among all. Writes a picture for each model, and a
-page that shows all of them.
+page that shows all of them. Models that the collection's index does not call CAD parts stand upright along y, as sculpts do.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import sys
 import tempfile
@@ -47,6 +48,7 @@ def main() -> None:
     images: Path = arguments.out / "images" / "contact-sheet"
     images.mkdir(parents=True, exist_ok=True)
     tail = f"_{arguments.quads}_sharp.obj"
+    sculpts = _sculpts(arguments.models / "index.csv")
     rows = _rows(arguments.peers / "peers.jsonl")
     lines = [
         f"# Results at {arguments.quads} quads beside the best peer's",
@@ -61,10 +63,20 @@ def main() -> None:
             continue
         shown = [_shown("Hybrid Quad", path, True), *_best_peer(arguments.peers, rows, model, arguments.quads)]
         picture = images / f"{model}.png"
+        if model in sculpts:
+            for each in shown:
+                each.points = each.points[:, [0, 2, 1]] * (1, -1, 1)
         _draw(shown, arguments.size, arguments.samples, picture)
         lines += [f"**{model}**. " + "; ".join(each.caption for each in shown), ""]
         lines += [f"![{model}]({picture.relative_to(arguments.out).as_posix()})", ""]
     (arguments.out / "contact-sheet.md").write_text("\n".join(lines))
+
+
+def _sculpts(index: Path) -> set[str]:
+    if not index.exists():
+        return set()
+    with index.open() as file:
+        return {row["name"] for row in csv.DictReader(file) if "cad" not in row["tags"].split("|")}
 
 
 def _rows(path: Path) -> list[dict]:
@@ -110,6 +122,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("names", nargs="*", help="only models whose name contains one of these")
     parser.add_argument("--ours", type=Path, default=ROOT / "out" / "sweep", help="folder of a sweep (default %(default)s)")
     parser.add_argument("--peers", type=Path, default=ROOT / "out" / "compare", help="folder of a comparison")
+    parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "meshes" / "dev", help="for its index.csv")
     parser.add_argument("--quads", type=int, default=2000)
     parser.add_argument("--size", type=int, default=360, help="width of a panel in pixels")
     parser.add_argument("--samples", type=int, default=12)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/limit_surface.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "support/meshes.h"
@@ -199,6 +200,24 @@ TEST(FitLimitSurface, SameForAnyNumberOfThreads) {
   const RemeshResult one = fitted(torus, 300, true, 0, 1), four = fitted(torus, 300, true, 0, 4);
   EXPECT_EQ(one.mesh.positions, four.mesh.positions);
   EXPECT_EQ(one.report.limit_fit.after.mean, four.report.limit_fit.after.mean);
+}
+
+TEST(FitLimitSurface, CornersAloneStay) {
+  QuadMesh box = to_quad_mesh(test::quad_box(1, 1, 1));
+  box.kind.assign(8, VertexKind::kCorner);
+  const std::vector<Vector3> before = box.positions;
+  const TriangleMesh surface = test::icosphere(3);
+  fit_limit_surface(box, SurfaceIndex(surface, {}), {}, RunContext{});
+  EXPECT_EQ(box.positions, before);
+}
+
+TEST(FitLimitSurface, NoQuadGetsInvertedAroundTightBends) {
+  const TriangleMesh thin = test::torus(64, 12, 1, 0.03);  // about two quads around
+  const RemeshResult before = fitted(thin, 120, false), after = fitted(thin, 120, true);
+  const SurfaceIndex index(thin, {});
+  EXPECT_TRUE(violations_of(after.mesh).empty());
+  EXPECT_LE(inverted_quads(after.mesh, index).size(), inverted_quads(before.mesh, index).size());
+  EXPECT_GE(after.report.scaled_jacobian_min, std::min(0.3, before.report.scaled_jacobian_min - 0.02) - 1e-9);
 }
 
 TEST(FitLimitSurface, NothingMovesUnlessAsked) {

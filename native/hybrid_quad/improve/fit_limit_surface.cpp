@@ -69,6 +69,7 @@ class LimitFit {
     build_system();
     const int n = static_cast<int>(mesh_.positions.size());
     Points moves = Points::Zero(n, 3);
+    if (unknown_.empty()) return moves;
     std::vector<Vector3> places;
     for (const int v : unknown_) places.push_back(mesh_.positions[v]);
     SparseFactor factor(system_, places, context_);
