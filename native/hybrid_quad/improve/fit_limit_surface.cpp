@@ -265,6 +265,11 @@ LimitFitReport fit_limit_surface(QuadMesh& quads, const SurfaceIndex& surface, c
   Points moves = fit.solve();
   report.held_back = hold_back(quads, surface, moves, context);
   report.after = fit.distance(moves);
+  if (report.after.mean >= report.before.mean) {  // it was as near as it gets, as on flat surfaces
+    report.after = report.before;
+    report.held_back = static_cast<int>(quads.positions.size());
+    return report;
+  }
   for (std::size_t v = 0; v < quads.positions.size(); ++v)
     quads.positions[v] += moves.row(static_cast<Eigen::Index>(v)).transpose();
   return report;

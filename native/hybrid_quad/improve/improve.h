@@ -43,14 +43,15 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
 /// The Catmull-Clark limit surface of the quads against the surface, in scene units; `mean` is by area.
 struct LimitFitReport {
   DirectedDistance before, after;  ///< from the limit surface to the surface
-  int held_back = 0;               ///< vertices that move less than they should, for quads around them would get bad
+  int held_back = 0;               ///< vertices that move less than they should, or not at all
 };
 
 /// Moves vertices so that the Catmull-Clark limit surface of the quads lies on the surface, and the limit curves of feature
 /// edges, which are infinitely sharp creases, on the feature curves. Corners stay, as infinitely sharp vertices. By linear
 /// least squares between projections (Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, section 4; limit points
 /// by OpenSubdiv), with springs against the change. No quad becomes inverted, or bad (scaled Jacobian below 0.3) and worse
-/// than it was. The vertices then lie off the surface, on the outside of where it bends.
+/// than it was; where the mean distance would not fall nothing moves. The vertices then lie off the surface, on the outside of
+/// where it bends.
 /// \param curves  for each curve of the quads' feature edges its segments
 /// \pre `quads` is valid (violations_of)
 LimitFitReport fit_limit_surface(QuadMesh& quads, const SurfaceIndex& surface, const std::vector<SegmentIndex>& curves,
