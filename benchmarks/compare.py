@@ -180,11 +180,16 @@ def _append(path: Path, row: dict[str, object]) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     out = ROOT / "out"
-    parser.add_argument("--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)")
+    parser.add_argument(
+        "--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)"
+    )
     parser.add_argument("--only", nargs="+", metavar="NAME", help="only models whose name contains one of these")
     parser.add_argument("--quads", nargs="+", type=int, default=[500, 2000, 8000], metavar="N")
     parser.add_argument(
-        "--results", type=Path, default=out / "sweep" / "results.jsonl", help="this package's, of a sweep (default %(default)s)"
+        "--results",
+        type=Path,
+        default=out / "sweep" / "results.jsonl",
+        help="this package's, of a sweep (default %(default)s)",
     )
     parser.add_argument("--only-recorded", action="store_true", help="leave out what of this package is not there")
     parser.add_argument("--blender", help="a Blender, for its QuadriFlow")

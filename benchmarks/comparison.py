@@ -139,7 +139,9 @@ def _table(cases: Sequence[Case]) -> list[str]:
 def _cell(result: Result) -> str:
     if result.quads is None:
         return result.status
-    head = "" if result.is_valid else "**invalid**" + (f" ({', '.join(result.failed)})" if result.failed else "") + " · "
+    head = (
+        "" if result.is_valid else "**invalid**" + (f" ({', '.join(result.failed)})" if result.failed else "") + " · "
+    )
     field = "" if result.singularities is None else f" (S {result.singularities})"
     jacobian = "/".join(_number(x, ".2f") for x in (result.jacobian_mean, result.jacobian_p1, result.jacobian_min))
     feature = "" if result.feature is None else f" · f {result.feature:.2f}"
@@ -195,7 +197,9 @@ def _irregular(cases: Sequence[Case]) -> list[Target]:
         middle = median(excess(case) for case in of_field)
         misses = [case.name for case in of_field if excess(case) > 0]
         text = "irregular vertices ≤ 1.1 × field singularities + 2 in the median"
-        targets.append(Target(text, f"median excess {middle:.1f}, {len(misses)} of {len(of_field)} above", middle <= 0, misses))
+        targets.append(
+            Target(text, f"median excess {middle:.1f}, {len(misses)} of {len(of_field)} above", middle <= 0, misses)
+        )
     return targets
 
 
@@ -210,7 +214,10 @@ def _shape(cases: Sequence[Case]) -> list[Target]:
         misses = [f"{case} ({value:.2f})" for case, value in values.items() if value < least]
         text = f"scaled Jacobian {name} ≥ {least} in the median model"
         targets.append(Target(text, f"{middle:.3f}", middle >= least, misses))
-    return [*targets, _share("scaled Jacobian min > 0 in every model", made, lambda c: (c.ours.jacobian_min or 0) > 0, 1.0)]
+    return [
+        *targets,
+        _share("scaled Jacobian min > 0 in every model", made, lambda c: (c.ours.jacobian_min or 0) > 0, 1.0),
+    ]
 
 
 def _features(cases: Sequence[Case]) -> list[Target]:

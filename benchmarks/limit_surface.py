@@ -27,7 +27,9 @@ HEADER = "| model | quads | unfitted: mean | max | fitted: mean | max | times ne
 def main() -> int:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)")
+    parser.add_argument(
+        "--models", type=Path, default=COLLECTION, help="folder with an index.csv (default %(default)s)"
+    )
     parser.add_argument("--only", nargs="+", metavar="NAME", help="only models whose name contains one of these")
     parser.add_argument("--quads", type=int, default=2000, metavar="N")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "limit_surface", help="for limit_surface.md")

@@ -158,6 +158,7 @@ class Measured:
 
 def measure(command: list[str], seconds: float, memory_mb: int) -> Measured:
     """Runs a program with limits, and takes the system's account of it."""
+
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
 

@@ -1,7 +1,8 @@
 """Quads by Gmsh: gmsh_quads.py IN.obj QUADS OUT.obj [sharp].
 
 The surface is cut into patches at sharp edges, which Gmsh parameterizes and meshes with its frontal algorithm for quads;
-recombination (blossom) makes quads of most triangles, and one subdivision of the rest. Prints the wall and processor seconds of that, without reading and writing.
+recombination (blossom) makes quads of most triangles, and one subdivision makes them of the rest. Prints the wall and
+processor seconds of that, without reading and writing.
 """
 
 from __future__ import annotations
@@ -14,10 +15,13 @@ from pathlib import Path
 
 import gmsh
 import numpy as np
-
 from wavefront import read_triangles, write_polygons
 
-FRONTAL_QUADS, BLOSSOM, ALL_QUADS = 8, 1, 1  # of Gmsh's options Mesh.Algorithm, RecombinationAlgorithm, SubdivisionAlgorithm
+FRONTAL_QUADS, BLOSSOM, ALL_QUADS = (
+    8,
+    1,
+    1,
+)  # of Gmsh's options Mesh.Algorithm, RecombinationAlgorithm, SubdivisionAlgorithm
 SHARP_DEGREES, SMOOTH_DEGREES = 40.0, 180.0
 TRIES = 3
 

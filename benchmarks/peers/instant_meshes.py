@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 import pynanoinstantmeshes
-
 from wavefront import read_triangles, write_polygons
 
 CREASE_DEGREES, NO_CREASES = 30.0, -1.0  # the package takes zero, which makes a crease of every edge

@@ -120,13 +120,19 @@ def _draw(shown: list[Shown], size: int, samples: int, path: Path) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help="only models whose name contains one of these")
-    parser.add_argument("--ours", type=Path, default=ROOT / "out" / "sweep", help="folder of a sweep (default %(default)s)")
+    parser.add_argument(
+        "--ours", type=Path, default=ROOT / "out" / "sweep", help="folder of a sweep (default %(default)s)"
+    )
     parser.add_argument("--peers", type=Path, default=ROOT / "out" / "compare", help="folder of a comparison")
-    parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "meshes" / "dev", help="for its index.csv")
+    parser.add_argument(
+        "--models", type=Path, default=ROOT.parent / "shared" / "meshes" / "dev", help="for its index.csv"
+    )
     parser.add_argument("--quads", type=int, default=2000)
     parser.add_argument("--size", type=int, default=360, help="width of a panel in pixels")
     parser.add_argument("--samples", type=int, default=12)
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "contact_sheet", help="for contact-sheet.md and images")
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "out" / "contact_sheet", help="for contact-sheet.md and images"
+    )
     return parser
 
 

@@ -12,8 +12,10 @@ from support import surfaces
 TABLE = """
 | model (triangles) | Instant Meshes | QuadriFlow | QuadWild-BiMDF |
 |--|--|--|--|
-| part (48) s | **invalid** (no_inverted) · 1890 · 37 · 0.76/-1.00 · 0.072 · f 2.76 · 0.2 s | fails (timeout) 180 s | 1960 · 24 · 0.99/0.97 · 0.010 · f 0.30 · 11.0 s |
-| toy (967) | 1892 · 105 · 0.37/0.01 · 0.120 · 0.2 s | **invalid** (a, b) · 1893 · 81 · -0.00/-0.69 · 0.127 · 1.5 s | not run |
+| part (48) s | **invalid** (no_inverted) · 1890 · 37 · 0.76/-1.00 · 0.072 · f 2.76 · 0.2 s | fails (timeout) 180 s | \
+1960 · 24 · 0.99/0.97 · 0.010 · f 0.30 · 11.0 s |
+| toy (967) | 1892 · 105 · 0.37/0.01 · 0.120 · 0.2 s | \
+**invalid** (a, b) · 1893 · 81 · -0.00/-0.69 · 0.127 · 1.5 s | not run |
 """
 
 

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
 # Settings that are passed on as they are.
 _NUMBERS = tuple(
-    name for name in ("field_smoothness", "anisotropy", "narrow_quads", "fit_limit_surface") if name in RemeshOptions.__dataclass_fields__
+    name
+    for name in ("field_smoothness", "anisotropy", "narrow_quads", "fit_limit_surface")
+    if name in RemeshOptions.__dataclass_fields__
 )
 
 

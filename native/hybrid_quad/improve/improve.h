@@ -48,7 +48,7 @@ struct LimitFitReport {
 
 /// Moves vertices so that the Catmull-Clark limit surface of the quads lies on the surface, and the limit curves of feature
 /// edges, which are infinitely sharp creases, on the feature curves. Corners stay, as infinitely sharp vertices. By linear
-/// least squares between projections (Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, section 4; limit points
+/// least squares between projections (Hoppe et al., *Piecewise smooth surface reconstruction*, 1994; limit points
 /// by OpenSubdiv), with springs against the change. No quad becomes inverted, or bad (scaled Jacobian below 0.3) and worse
 /// than it was; where the mean distance would not fall nothing moves. The vertices then lie off the surface, on the outside of
 /// where it bends.
