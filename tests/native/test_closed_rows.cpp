@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "hybrid_quad/spanning_parameterization/closed_rows.h"
+#include "hybrid_quad/spanning_parameterization/row_cycles.h"
 #include "hybrid_quad/spanning_parameterization/sign_gauge.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"
@@ -54,23 +58,24 @@ TEST(ClosedRows, ChangeTheSignAroundTheLoopsTheyCrossAndNothingElse) {
   const GeneratingLoops loops(mesh);
   EXPECT_EQ(loops.odd(torus.grid), 0u);
   for (const GeneratingLoops::Set wanted : {1, 2, 3}) {
-    std::size_t states = 1000000;
-    const auto row = shortest_closed_row(movable, loops, wanted, {7}, states, RunContext{});
-    ASSERT_TRUE(row);
-    EXPECT_LT(states, 1000000u);
-    std::vector<IntVector2> carried;
-    IntVector2 b = row->burgers;
-    for (const int h : row->crossed) {
-      EXPECT_EQ(h / 3, carried.empty() ? 7 : mesh.opposite(row->crossed[carried.size() - 1]) / 3);
-      movable.cross(h, b);
-      carried.push_back(b);
-      b = turned(b, frames.matching[h]);
+    const std::vector<ClosedRow> rows = closed_rows_that_flip(movable, loops, wanted, 7, RunContext{});
+    ASSERT_FALSE(rows.empty());
+    std::vector<std::pair<int, IntVector2>> carried;
+    for (const ClosedRow& row : rows) {
+      IntVector2 b = row.burgers;
+      for (std::size_t i = 0; i < row.crossed.size(); ++i) {
+        const int h = row.crossed[i], next = row.crossed[(i + 1) % row.crossed.size()];
+        EXPECT_EQ(mesh.opposite(h) / 3, next / 3);
+        movable.cross(h, b);
+        carried.emplace_back(h, b);
+        b = turned(b, frames.matching[h]);
+      }
+      EXPECT_EQ(b, row.burgers);
     }
-    EXPECT_EQ(b, row->burgers);
     for (int f = 0; f < mesh.face_count(); ++f) EXPECT_EQ(torus.grid.burgers(f), (IntVector2{0, 0}));
     EXPECT_EQ(loops.odd(torus.grid), wanted);
     EXPECT_FALSE(can_make_jumps_even(mesh, torus.grid));
-    for (std::size_t i = 0; i < carried.size(); ++i) movable.cross(row->crossed[i], minus(carried[i]));
+    for (const auto& [h, b] : carried) movable.cross(h, minus(b));
     EXPECT_EQ(loops.odd(torus.grid), 0u);
   }
 }
@@ -80,9 +85,68 @@ TEST(ClosedRows, NoneWhereThereIsNothingToGoAround) {
   const FrameField frames = test::smooth_frames(ball.surface, 0.3);
   const GridMeasure measure = measure_edges(ball.surface, frames);
   MovableGrid movable(ball.surface, frames, measure, 1, ball.grid);
-  std::size_t states = 100000;
-  EXPECT_FALSE(shortest_closed_row(movable, GeneratingLoops(ball.surface.mesh), 0, {0}, states, RunContext{}));
-  EXPECT_FALSE(shortest_closed_row(movable, GeneratingLoops(ball.surface.mesh), 1, {0}, states, RunContext{}));
+  const GeneratingLoops loops(ball.surface.mesh);
+  EXPECT_TRUE(closed_rows_that_flip(movable, loops, 0, 0, RunContext{}).empty());
+  EXPECT_TRUE(closed_rows_that_flip(movable, loops, 1, 0, RunContext{}).empty());
+}
+
+TEST(LoopSums, AddUp) {
+  LoopSums sums;
+  EXPECT_TRUE(sums.add(0b011));
+  EXPECT_TRUE(sums.add(0b110));
+  EXPECT_FALSE(sums.add(0b101));  // both together
+  EXPECT_FALSE(sums.add(0));
+  EXPECT_TRUE(sums.add(0b111));
+  EXPECT_EQ(sums.rank(), 3u);
+  const GeneratingLoops::Set added[] = {0b011, 0b110, 0b111};
+  for (GeneratingLoops::Set wanted = 0; wanted < 8; ++wanted) {
+    const auto of = sums.sum_for(wanted);
+    ASSERT_TRUE(of);
+    GeneratingLoops::Set sum = 0;
+    for (int k = 0; k < 3; ++k)
+      if (*of >> k & 1) sum ^= added[k];
+    EXPECT_EQ(sum, wanted);
+  }
+  EXPECT_FALSE(sums.sum_for(0b1000));
+}
+
+RowRoute route(int from, int to) {
+  RowRoute route;
+  route.from = from;
+  route.to = to;
+  route.end = to < 0 ? RowRoute::End::kBoundary : RowRoute::End::kFace;
+  return route;
+}
+
+TEST(RowCycles, ReachEverySiteAnEvenNumberOfTimes) {
+  // Two there and back, a triangle, two to the boundary, and one that leads nowhere.
+  const std::vector<RowRoute> routes = {route(1, 2), route(2, 3), route(3, 1), route(1, 2),  route(2, 1),
+                                        route(4, 5), route(5, -1), route(4, -1), route(3, 6), route(7, 7)};
+  const std::vector<RowCycle> cycles = cycles_of(routes);
+  std::vector<int> uses(routes.size(), 0);
+  for (const RowCycle& cycle : cycles) {
+    std::map<int, int> visits;
+    for (const int i : cycle) {
+      ++uses[i];
+      ++visits[routes[i].from];
+      ++visits[routes[i].to];
+    }
+    for (const auto& [site, count] : visits) EXPECT_EQ(count % 2, 0) << site;
+  }
+  EXPECT_EQ(cycles.size(), 4u);
+  EXPECT_EQ(uses, (std::vector<int>{1, 1, 1, 1, 1, 1, 1, 1, 0, 1}));
+}
+
+TEST(RowCycles, AreLeftOutSoThatTheOthersFlipNothing) {
+  const std::vector<RowCycle> cycles = {{0, 1, 2}, {3, 4}, {5, 6, 7, 8}, {9, 10}};
+  const std::vector<GeneratingLoops::Set> flips = {0b01, 0b01, 0b11, 0};
+  const std::vector<int> left_out = cycles_to_leave_out(cycles, flips);
+  GeneratingLoops::Set kept = 0;
+  for (std::size_t k = 0; k < cycles.size(); ++k)
+    if (std::find(left_out.begin(), left_out.end(), static_cast<int>(k)) == left_out.end()) kept ^= flips[k];
+  EXPECT_EQ(kept, 0u);
+  EXPECT_LE(left_out.size(), 2u);
+  EXPECT_TRUE(cycles_to_leave_out(cycles, {0b10, 0b10, 0, 0}).empty());
 }
 
 }  // namespace

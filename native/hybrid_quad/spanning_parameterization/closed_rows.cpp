@@ -1,100 +1,115 @@
 #include "hybrid_quad/spanning_parameterization/closed_rows.h"
 
 #include <algorithm>
-#include <bitset>
 #include <functional>
 #include <limits>
+#include <queue>
 #include <tuple>
-#include <unordered_map>
+#include <utility>
 
 namespace hybrid_quad {
 
 namespace {
 
-std::size_t loop_count(GeneratingLoops::Set set) { return std::bitset<64>(set).count(); }
+constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// Faces with directions, 4 face + direction, reached by rows that have crossed the same loops an odd number of times.
-struct Layer {
-  GeneratingLoops::Set crossed;
-  std::vector<float> distance;
-  std::vector<int> over;          ///< half-edge crossed last, -1 at the start
-  std::vector<int> before;        ///< layer before that
-  std::vector<char> settled;
+/// A closed row: out along the tree to a state, over one more half-edge, and back along the tree.
+struct Candidate {
+  float length;
+  int tree, state, over, back;  ///< over: half-edge; back: the state beyond it
+  GeneratingLoops::Set flips;
+
+  bool operator<(const Candidate& other) const {
+    return std::tie(length, tree, state, over) < std::tie(other.length, other.tree, other.state, other.over);
+  }
 };
 
-class ClosedRowSearch {
+/// The shortest ways of a row's end from one face, by states: faces with directions, 4 face + direction.
+class RowTree {
  public:
-  ClosedRowSearch(const MovableGrid& grid, const GeneratingLoops& loops, GeneratingLoops::Set wanted, std::size_t most_left,
-                  std::size_t& states)
-      : grid_(grid), mesh_(grid.mesh()), loops_(loops), wanted_(wanted), most_left_(most_left), states_left_(states) {}
+  RowTree(const MovableGrid& grid, const GeneratingLoops& loops, int face, int direction, const RunContext& context)
+      : grid_(grid), mesh_(grid.mesh()), loops_(loops) {
+    const std::size_t states = 4 * static_cast<std::size_t>(mesh_.face_count());
+    distance_.assign(states, kFar);
+    over_.assign(states, -1);
+    flips_.assign(states, 0);
+    grow(4 * face + direction, context);
+  }
 
-  /// Replaces `best` where a row through face f in the given direction is shorter.
-  void run(int f, int direction, const RunContext& context, double& shortest, ClosedRow& best) {
-    const int start = 4 * f + direction;
-    layers_.clear();
-    number_.clear();
-    heap_.clear();
-    reach(layer(0), start, 0, -1, -1);
-    while (!heap_.empty() && states_left_ > 0) {
-      const auto [distance, k, state] = heap_.front();
-      std::pop_heap(heap_.begin(), heap_.end(), std::greater<Step>());
-      heap_.pop_back();
-      if (layers_[k].settled[state]) continue;
-      if (distance >= shortest) return;
-      layers_[k].settled[state] = 1;
-      if ((--states_left_ & 0x3fff) == 0) context.checkpoint(0.48);
-      const GeneratingLoops::Set crossed = layers_[k].crossed;
-      if (state == start && loop_count(wanted_ ^ crossed) <= most_left_) {
-        shortest = distance;
-        best = {kUnitSteps[direction], way_to(k, state)};
-        return;
-      }
-      const int t = state / 4;
-      const IntVector2& b = kUnitSteps[state % 4];
-      for (int h = 3 * t; h < 3 * t + 3; ++h) {
-        const int o = mesh_.opposite(h);
-        if (o < 0 || !grid_.may_cross(h, b)) continue;
-        const double crossing = grid_.measure().axis[h] >= 0 ? kFeatureCrossing : 0;
-        reach(layer(crossed ^ loops_.through(h)), 4 * (o / 3) + direction_of(turned(b, grid_.frames().matching[h])),
-              static_cast<float>(distance + grid_.step_length(t, o / 3) + crossing), h, k);
+  /// Adds the rows that flip something and are no longer than the limit.
+  void list_candidates(int tree, float longest, std::vector<Candidate>& candidates) const {
+    for (std::size_t state = 0; state < distance_.size(); ++state) {
+      if (distance_[state] == kFar) continue;
+      const int s = static_cast<int>(state);
+      for (int h = 3 * (s / 4); h < 3 * (s / 4) + 3; ++h) {
+        const int next = beyond(s, h);
+        if (next < 0 || distance_[next] == kFar) continue;
+        const GeneratingLoops::Set flips = flips_[s] ^ flips_[next] ^ loops_.through(h);
+        const float length = distance_[s] + step(s, h) + distance_[next];
+        if (flips != 0 && length <= longest) candidates.push_back({length, tree, s, h, next, flips});
       }
     }
+  }
+
+  ClosedRow row(const Candidate& candidate) const {
+    std::vector<int> out = way_to(candidate.state), back = way_to(candidate.back);
+    std::size_t common = 0;
+    while (common < std::min(out.size(), back.size()) && out[common] == back[common]) ++common;
+    int start = candidate.state;
+    for (std::size_t i = out.size(); i-- > common;) start = before(start, out[i]);
+    ClosedRow row{kUnitSteps[start % 4], {out.begin() + static_cast<std::ptrdiff_t>(common), out.end()}};
+    row.crossed.push_back(candidate.over);
+    for (std::size_t i = back.size(); i-- > common;) row.crossed.push_back(mesh_.opposite(back[i]));
+    return row;
   }
 
  private:
-  using Step = std::tuple<float, int, int>;  // distance, layer, state
+  /// The state that a row's end comes to over half-edge h, -1 where it may not cross.
+  int beyond(int state, int h) const {
+    const int o = mesh_.opposite(h);
+    const IntVector2& b = kUnitSteps[state % 4];
+    if (o < 0 || !grid_.may_cross(h, b)) return -1;
+    return 4 * (o / 3) + direction_of(turned(b, grid_.frames().matching[h]));
+  }
 
-  /// Number of a layer, -1 where there are too many.
-  int layer(GeneratingLoops::Set crossed) {
-    constexpr std::size_t kMostLayers = 64;
-    if (number_.size() >= kMostLayers && number_.count(crossed) == 0) return -1;
-    const auto [place, fresh] = number_.try_emplace(crossed, static_cast<int>(layers_.size()));
-    if (fresh) {
-      const std::size_t states = 4 * static_cast<std::size_t>(mesh_.face_count());
-      layers_.push_back({crossed, std::vector<float>(states, std::numeric_limits<float>::infinity()),
-                         std::vector<int>(states, -1), std::vector<int>(states, -1), std::vector<char>(states, 0)});
+  int before(int state, int h) const {
+    return 4 * (h / 3) + direction_of(turned(kUnitSteps[state % 4], grid_.frames().matching[mesh_.opposite(h)]));
+  }
+
+  float step(int state, int h) const {
+    const double crossing = grid_.measure().axis[h] >= 0 ? kFeatureCrossing : 0;
+    return static_cast<float>(grid_.step_length(state / 4, mesh_.opposite(h) / 3) + crossing);
+  }
+
+  void grow(int start, const RunContext& context) {
+    using Step = std::pair<float, int>;
+    const double longest = grid_.longest_way(start / 4);
+    std::priority_queue<Step, std::vector<Step>, std::greater<Step>> front;
+    distance_[start] = 0;
+    front.push({0.0f, start});
+    for (std::size_t steps = 1; !front.empty(); ++steps) {
+      const auto [distance, state] = front.top();
+      front.pop();
+      if (distance > distance_[state]) continue;
+      if ((steps & 0x3fff) == 0) context.checkpoint(0.48);
+      for (int h = 3 * (state / 4); h < 3 * (state / 4) + 3; ++h) {
+        const int next = beyond(state, h);
+        if (next < 0) continue;
+        const float there = distance + step(state, h);
+        if (there >= distance_[next] || there > longest) continue;
+        distance_[next] = there;
+        over_[next] = h;
+        flips_[next] = flips_[state] ^ loops_.through(h);
+        front.push({there, next});
+      }
     }
-    return place->second;
   }
 
-  void reach(int k, int state, float distance, int over, int before) {
-    if (k < 0) return;
-    Layer& at = layers_[k];
-    if (distance >= at.distance[state]) return;
-    at.distance[state] = distance;
-    at.over[state] = over;
-    at.before[state] = before;
-    heap_.emplace_back(distance, k, state);
-    std::push_heap(heap_.begin(), heap_.end(), std::greater<Step>());
-  }
-
-  std::vector<int> way_to(int k, int state) const {
+  std::vector<int> way_to(int state) const {
     std::vector<int> crossed;
-    while (layers_[k].over[state] >= 0) {
-      const int h = layers_[k].over[state], back = mesh_.opposite(h);
-      crossed.push_back(h);
-      k = layers_[k].before[state];
-      state = 4 * (h / 3) + direction_of(turned(kUnitSteps[state % 4], grid_.frames().matching[back]));
+    while (over_[state] >= 0) {
+      crossed.push_back(over_[state]);
+      state = before(state, over_[state]);
     }
     std::reverse(crossed.begin(), crossed.end());
     return crossed;
@@ -103,15 +118,31 @@ class ClosedRowSearch {
   const MovableGrid& grid_;
   const TriangleMesh& mesh_;
   const GeneratingLoops& loops_;
-  GeneratingLoops::Set wanted_;
-  std::size_t most_left_;     ///< of the wanted loops, or too many
-  std::size_t& states_left_;  ///< to be settled
-  std::vector<Layer> layers_;
-  std::unordered_map<GeneratingLoops::Set, int> number_;
-  std::vector<Step> heap_;
+  std::vector<float> distance_;
+  std::vector<int> over_;  ///< half-edge crossed last, -1 at the start
+  std::vector<GeneratingLoops::Set> flips_;
 };
 
 }  // namespace
+
+bool LoopSums::add(GeneratingLoops::Set flips) {
+  if (rank() == 64) return false;
+  const Row row = reduced({flips, GeneratingLoops::Set{1} << rank()});
+  if (row.flips != 0) rows_.push_back(row);
+  return row.flips != 0;
+}
+
+std::optional<GeneratingLoops::Set> LoopSums::sum_for(GeneratingLoops::Set flips) const {
+  const Row row = reduced({flips, 0});
+  return row.flips == 0 ? std::optional(row.of) : std::nullopt;
+}
+
+/// Each row has a lowest loop that no later row has.
+LoopSums::Row LoopSums::reduced(Row row) const {
+  for (const Row& other : rows_)
+    if (row.flips & other.flips & -other.flips) row = {row.flips ^ other.flips, row.of ^ other.of};
+  return row;
+}
 
 GeneratingLoops::GeneratingLoops(const TriangleMesh& mesh) : mesh_(mesh), through_(mesh.halfedge_count(), 0) {
   std::vector<char> seen_vertex(mesh.vertex_count(), 0), in_tree(mesh.halfedge_count(), 0), seen_face(mesh.face_count(), 0);
@@ -183,24 +214,27 @@ GeneratingLoops::Set GeneratingLoops::odd(const LiftedGrid& grid) const {
   return set;
 }
 
-std::optional<ClosedRow> shortest_closed_row(const MovableGrid& grid, const GeneratingLoops& loops, GeneratingLoops::Set wanted,
-                                             const std::vector<int>& faces, std::size_t& states_left,
-                                             const RunContext& context) {
-  if (wanted == 0) return std::nullopt;
-  ClosedRow best;
-  for (const std::size_t most_left : {std::size_t{0}, loop_count(wanted) - 1}) {
-    std::size_t half = states_left / 2;
-    states_left -= half;
-    ClosedRowSearch search(grid, loops, wanted, most_left, half);
-    for (const int f : faces) {
-      double shortest = grid.longest_way(f);
-      for (int direction = 0; direction < 4; ++direction) search.run(f, direction, context, shortest, best);
-      if (!best.crossed.empty()) break;
-    }
-    states_left += half;
-    if (!best.crossed.empty()) return best;
+std::vector<ClosedRow> closed_rows_that_flip(const MovableGrid& grid, const GeneratingLoops& loops, GeneratingLoops::Set wanted,
+                                             int face, const RunContext& context) {
+  std::vector<RowTree> trees;
+  std::vector<Candidate> candidates;
+  for (int direction = 0; direction < 2; ++direction) {  // the others are the same rows the other way around
+    trees.emplace_back(grid, loops, face, direction, context);
+    trees.back().list_candidates(direction, static_cast<float>(2 * grid.longest_way(face)), candidates);
   }
-  return std::nullopt;
+  std::sort(candidates.begin(), candidates.end());
+  LoopSums sums;
+  std::vector<const Candidate*> independent;
+  std::optional<GeneratingLoops::Set> chosen;
+  for (const Candidate& candidate : candidates) {
+    if (!sums.add(candidate.flips)) continue;
+    independent.push_back(&candidate);
+    if ((chosen = sums.sum_for(wanted))) break;
+  }
+  std::vector<ClosedRow> rows;
+  for (std::size_t k = 0; chosen && k < independent.size(); ++k)
+    if (*chosen >> k & 1) rows.push_back(trees[independent[k]->tree].row(*independent[k]));
+  return rows;
 }
 
 }  // namespace hybrid_quad

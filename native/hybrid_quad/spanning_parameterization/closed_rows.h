@@ -43,11 +43,27 @@ struct ClosedRow {
   std::vector<int> crossed;  ///< half-edges, each in the face that is left
 };
 
-/// The shortest closed row through the first of some faces that has one which crosses each of the wanted loops an odd number
-/// of times, and each other an even number; where there is none, one that leaves fewer loops to be crossed.
-/// \param states_left  places and directions that may be looked at, less those that were
-std::optional<ClosedRow> shortest_closed_row(const MovableGrid& grid, const GeneratingLoops& loops, GeneratingLoops::Set wanted,
-                                             const std::vector<int>& faces, std::size_t& states_left,
-                                             const RunContext& context);
+/// Sums, modulo two, of independent sets of loops.
+class LoopSums {
+ public:
+  /// \returns whether the set is no sum of those before; then it is one more
+  bool add(GeneratingLoops::Set flips);
+  /// Those, by their number, that add up to a set; none if there are no such.
+  std::optional<GeneratingLoops::Set> sum_for(GeneratingLoops::Set flips) const;
+  std::size_t rank() const { return rows_.size(); }
+
+ private:
+  struct Row {
+    GeneratingLoops::Set flips, of;  ///< of: the sets, by number, that it is the sum of
+  };
+  Row reduced(Row row) const;
+  std::vector<Row> rows_;
+};
+
+/// Closed rows that together cross each of the wanted loops an odd number of times, and each other an even number; empty where there
+/// are none near a face. They are taken from the shortest ones that start from that face, go around something, and come
+/// back (a greedy system of loops, as in the paper above).
+std::vector<ClosedRow> closed_rows_that_flip(const MovableGrid& grid, const GeneratingLoops& loops, GeneratingLoops::Set wanted,
+                                             int face, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -1,11 +1,15 @@
 #include "hybrid_quad/spanning_parameterization/row_ends.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "hybrid_quad/spanning_parameterization/closed_rows.h"
+#include "hybrid_quad/spanning_parameterization/row_cycles.h"
 #include "hybrid_quad/spanning_parameterization/row_moves.h"
 #include "hybrid_quad/spanning_parameterization/row_routes.h"
 #include "hybrid_quad/spanning_parameterization/sign_gauge.h"
@@ -83,82 +87,73 @@ class RowEndCanceller {
     return true;
   }
 
-  /// Routes that share sites stand or fall together. \return for each route the number of its group
-  std::vector<int> groups() const {
-    std::map<int, int> root;
-    const auto find = [&](int site) {
-      while (root.at(site) != site) site = root[site] = root.at(root.at(site));
-      return site;
-    };
-    for (const RowRoute& route : performed_)
-      for (const int site : {route.from, route.to}) root.emplace(site, site);
-    for (const RowRoute& route : performed_)
-      if (route.to >= 0) root[find(route.to)] = find(route.from);
-    std::vector<int> group;
-    for (const RowRoute& route : performed_) group.push_back(find(route.from));
-    return group;
-  }
-
-  /// Takes all routes back, and then makes those groups of them again that leave nothing odd.
+  /// Takes all routes back, and then makes as many again as leave nothing odd, in the smallest sets that can.
   void keep_what_fits() {
-    const std::vector<int> group = groups();
-    std::map<int, std::vector<int>> members;
-    std::map<int, bool> is_whole;
-    for (std::size_t i = 0; i < performed_.size(); ++i) {
-      members[group[i]].push_back(static_cast<int>(i));
-      bool& whole = is_whole.emplace(group[i], true).first->second;
-      for (const int site : {performed_[i].from, performed_[i].to})
-        whole = whole && (site < 0 || !is_odd(rows_.held(site)));
-    }
     for (std::size_t i = performed_.size(); i-- > 0;) rows_.undo(performed_[i]);
-    std::vector<std::vector<int>> waiting;
-    for (const auto& [root, routes] : members) {
-      if (!is_whole[root] || try_routes(routes)) continue;
-      // Two groups that are odd around the same loop are even together.
-      for (auto other = waiting.begin();; ++other) {
-        if (other == waiting.end()) {
-          waiting.push_back(routes);
-          break;
-        }
-        std::vector<int> both = *other;
-        both.insert(both.end(), routes.begin(), routes.end());
-        if (!try_routes(both)) continue;
-        waiting.erase(other);
-        break;
-      }
-      context_.checkpoint(0.48);
-    }
-    if (waiting.empty()) return;
     const GeneratingLoops loops(mesh_);
-    for (const std::vector<int>& routes : waiting) try_routes(routes, &loops);
+    std::vector<RowCycle> cycles = cycles_of(performed_);
+    const auto is_hopeless = [&](const RowCycle& cycle) { return !try_cycle(cycle, loops); };
+    cycles.erase(std::remove_if(cycles.begin(), cycles.end(), is_hopeless), cycles.end());
+    if (!loops.fit() || can_make_jumps_even(mesh_, grid_.grid())) return;
+    std::vector<GeneratingLoops::Set> flips;
+    for (const RowCycle& cycle : cycles) flips.push_back(flipped_by(cycle, performed_, loops));
+    const std::vector<int> left_out = cycles_to_leave_out(cycles, flips);
+    for (const int k : left_out) take_back(cycles[k]);
+    for (const int k : left_out)
+      if (make(cycles[k]) && !close_rows(cycles[k], loops)) take_back(cycles[k]);
   }
 
-  /// \param loops  around which closed rows may go to make things even, null: none may
-  bool try_routes(const std::vector<int>& routes, const GeneratingLoops* loops = nullptr) {
-    std::size_t done = 0;
-    for (; done < routes.size() && rows_.is_open(performed_[routes[done]]); ++done) rows_.perform(performed_[routes[done]]);
-    if (done == routes.size()) {
-      if (can_make_jumps_even(mesh_, grid_.grid())) return true;
-      if (loops && loops->fit() && close_rows(routes, *loops)) return true;
-    }
-    while (done > 0) rows_.undo(performed_[routes[--done]]);
+  /// Makes a cycle's routes if that leaves fewer dislocations. Where loops cannot be told apart it must flip none.
+  bool try_cycle(const RowCycle& cycle, const GeneratingLoops& loops) {
+    context_.checkpoint(0.48);
+    const int before = held_at_sites(cycle);
+    if (!make(cycle)) return false;
+    if (held_at_sites(cycle) < before && (loops.fit() || can_make_jumps_even(mesh_, grid_.grid()))) return true;
+    take_back(cycle);
     return false;
   }
 
-  /// Makes the sums of jumps even around all loops by closed rows that start where one of the routes does.
-  bool close_rows(const std::vector<int>& routes, const GeneratingLoops& loops) {
-    constexpr std::size_t kMostFaces = 4;
-    std::vector<int> faces;
-    for (const int i : routes)
-      if (faces.size() < kMostFaces) faces.push_back(rows_.face_of(performed_[i].from));
-    std::vector<ClosedRow> closed;
-    for (auto odd = loops.odd(grid_.grid()); odd != 0; odd = loops.odd(grid_.grid())) {
-      auto row = shortest_closed_row(grid_, loops, odd, faces, closed_row_states_, context_);
-      if (!row || !rows_.perform(*row)) break;
-      closed.push_back(std::move(*row));
+  /// \returns whether all routes were open; where not, none is made
+  bool make(const RowCycle& cycle) {
+    for (std::size_t i = 0; i < cycle.size(); ++i) {
+      if (rows_.is_open(performed_[cycle[i]])) {
+        rows_.perform(performed_[cycle[i]]);
+        continue;
+      }
+      while (i > 0) rows_.undo(performed_[cycle[--i]]);
+      return false;
     }
-    if (can_make_jumps_even(mesh_, grid_.grid())) return true;
-    for (; !closed.empty(); closed.pop_back()) rows_.undo(closed.back());
+    return true;
+  }
+
+  void take_back(const RowCycle& cycle) {
+    for (std::size_t i = cycle.size(); i-- > 0;) rows_.undo(performed_[cycle[i]]);
+  }
+
+  /// Row ends in the faces that a cycle's routes start and end in.
+  int held_at_sites(const RowCycle& cycle) const {
+    std::set<int> faces;
+    for (const int i : cycle)
+      for (const int site : {performed_[i].from, performed_[i].to})
+        if (site >= 0 && !rows_.is_cone(site)) faces.insert(site);
+    int held = 0;
+    for (const int f : faces) held += std::abs(grid_.burgers(f)[0]) + std::abs(grid_.burgers(f)[1]);
+    return held;
+  }
+
+  /// Makes the sums of jumps even around all loops by closed rows near where one of the cycle's routes starts.
+  bool close_rows(const RowCycle& cycle, const GeneratingLoops& loops) {
+    constexpr std::size_t kMostFaces = 4;
+    const GeneratingLoops::Set odd = loops.odd(grid_.grid());
+    for (std::size_t i = 0; i < std::min(kMostFaces, cycle.size()) && faces_left_ > 0; ++i) {
+      faces_left_ -= mesh_.face_count();
+      const int face = rows_.face_of(performed_[cycle[i]].from);
+      const std::vector<ClosedRow> rows = closed_rows_that_flip(grid_, loops, odd, face, context_);
+      std::size_t made = 0;
+      while (made < rows.size() && rows_.perform(rows[made])) ++made;
+      if (!rows.empty() && made == rows.size()) return true;
+      while (made > 0) rows_.undo(rows[--made]);
+    }
     return false;
   }
 
@@ -170,7 +165,7 @@ class RowEndCanceller {
   std::priority_queue<RowRoute, std::vector<RowRoute>, LaterRoute> queue_;
   std::map<int, int> version_;  ///< by 4 face + direction
   std::vector<RowRoute> performed_;
-  std::size_t closed_row_states_ = 2000000;  ///< for all closed rows together
+  std::ptrdiff_t faces_left_ = 2000000;  ///< for all searches for closed rows together
 };
 
 }  // namespace
