@@ -63,7 +63,7 @@ void split_edges_with_common_ends(EditableMesh& edited) {
 }
 
 struct LongEdge {
-  double squared_length;
+  float squared_length;  ///< single precision: halves of an edge are equal, however the surface lies in space
   int halfedge;
   bool operator<(const LongEdge& other) const {
     return squared_length != other.squared_length ? squared_length < other.squared_length : halfedge > other.halfedge;
@@ -78,16 +78,17 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
   EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks));
   split_edges_with_common_ends(edited);
   std::priority_queue<LongEdge> queue;
+  const auto squared_length = [&](int h) { return static_cast<float>(edited.edge_vector(h).squaredNorm()); };
   const auto push = [&](int h) {
-    const double squared = edited.edge_vector(h).squaredNorm();
-    if (squared > longest * longest) queue.push({squared, h});
+    const float squared = squared_length(h);
+    if (squared > static_cast<float>(longest * longest)) queue.push({squared, h});
   };
   for (int h = 0; h < edited.halfedge_slots(); ++h)
     if (edited.opposite(h) < h) push(h);
   while (!queue.empty()) {
     const LongEdge edge = queue.top();
     queue.pop();
-    if (edited.edge_vector(edge.halfedge).squaredNorm() != edge.squared_length) continue;
+    if (squared_length(edge.halfedge) != edge.squared_length) continue;
     const int from = edited.from(edge.halfedge), to = edited.to(edge.halfedge);
     const int middle = edited.split_edge(edge.halfedge, 0.5 * (edited.position(from) + edited.position(to)));
     // All sides of the new faces: splitting moved half-edges from one edge to another.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/canonical_order.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/mesh_oddities.h"
@@ -301,6 +302,17 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   built = std::move(kept);
 }
 
+/// The same surface gives the same mesh, in whatever order its file has it.
+void put_in_order(BuiltMesh& built) {
+  const CanonicalOrder order = canonical_order(built.mesh);
+  std::vector<int> input_vertex, input_face;
+  for (const int v : order.vertex) input_vertex.push_back(built.input_vertex[v]);
+  for (std::size_t h = 0; h < order.halfedge.size(); h += 3) input_face.push_back(built.input_face[order.halfedge[h] / 3]);
+  built.mesh = reordered(built.mesh, order);
+  built.input_vertex = std::move(input_vertex);
+  built.input_face = std::move(input_face);
+}
+
 BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_faces();
   find_references();
@@ -320,6 +332,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   BuiltMesh built = glue();
   context.checkpoint();
   drop_negligible_components(built);
+  put_in_order(built);
   return built;
 }
 

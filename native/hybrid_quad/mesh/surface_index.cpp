@@ -89,13 +89,12 @@ struct SurfaceIndex::Tree {
     const auto& t = mesh.face(f);
     return nearest_on_triangle(p, mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
   }
-  /// Takes face f if it is nearer than what `best` holds.
-  bool take(const Vector3& p, int f, SurfacePoint& best) const {
+  /// Takes face f if it is nearer than what `best` holds, or as near and comes first.
+  void take(const Vector3& p, int f, SurfacePoint& best) const {
     const Vector3 q = nearest_on_face(p, f);
     const double d = (q - p).squaredNorm();
-    if (!(d < best.squared_distance)) return false;
+    if (f < best.face ? !(d < with_rounding(best.squared_distance)) : !(with_rounding(d) < best.squared_distance)) return;
     best = {f, q, d};
-    return true;
   }
   void build();
 };
@@ -186,7 +185,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
   stack[size++] = {0, tree.nodes[0].box.squared_distance(p)};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (!(entry.squared_distance < best.squared_distance)) continue;
+    if (!(entry.squared_distance < with_rounding(best.squared_distance))) continue;
     const Node& node = tree.nodes[entry.node];
     if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
     if (node.count > 0) {
@@ -197,8 +196,9 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
     Entry far{node.right, tree.nodes[node.right].box.squared_distance(p)};
     if (far.squared_distance < near.squared_distance) std::swap(near, far);
-    if (far.squared_distance < best.squared_distance) stack[size++] = far;
-    if (near.squared_distance < best.squared_distance) stack[size++] = near;
+    const double limit = with_rounding(best.squared_distance);
+    if (far.squared_distance < limit) stack[size++] = far;
+    if (near.squared_distance < limit) stack[size++] = near;
   }
   if (best.face < 0) best.squared_distance = 0;
   return best;

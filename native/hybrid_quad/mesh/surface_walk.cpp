@@ -1,5 +1,7 @@
 #include "hybrid_quad/mesh/surface_walk.h"
 
+#include <algorithm>
+
 namespace hybrid_quad {
 
 namespace {
@@ -50,6 +52,26 @@ Vector3 nearest_with_place(const Vector3& p, const Vector3& a, const Vector3& b,
   return a + ab * (vb / sum) + ac * (vc / sum);
 }
 
+/// The first of the faces of a region that have a side or a corner of face f in common: of all that are as near, so that
+/// rounding does not choose.
+int first_face_at(const TriangleMesh& mesh, const std::vector<int>& region, int f, int place) {
+  int first = f;
+  const auto consider = [&](int h) {
+    if (h >= 0 && (region.empty() || region[h / 3] == region[f])) first = std::min(first, h / 3);
+  };
+  if (place < kCorner0) {
+    if (place != kInside) consider(mesh.opposite(3 * f + place));
+    return first;
+  }
+  const int start = mesh.outgoing(mesh.from(3 * f + place - kCorner0));
+  for (int h = start; h >= 0;) {
+    consider(h);
+    h = mesh.rotate_ccw(h);
+    if (h == start) break;
+  }
+  return first;
+}
+
 }  // namespace
 
 SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& region, const Vector3& p, int start) {
@@ -70,7 +92,7 @@ SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& r
     if (!region.empty() && region[f] != region[start]) return false;
     int where;
     const SurfacePoint point = project(f, &where);
-    if (!(point.squared_distance < best.squared_distance)) return false;
+    if (!(with_rounding(point.squared_distance) < best.squared_distance)) return false;
     best = point;
     place = where;
     return true;
@@ -92,6 +114,7 @@ SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& r
       h = mesh.rotate_ccw(h);
     }
   }
+  best.face = first_face_at(mesh, region, best.face, place);
   return best;
 }
 

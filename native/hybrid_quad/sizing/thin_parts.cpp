@@ -32,9 +32,10 @@ class ThicknessProbe {
   }
 
   /// Whether a part ends on both sides of its middle within reach, in some direction across: a tube or a tip, no sheet.
-  bool is_narrow(const Vector3& centre, const Vector3& normal) const {
+  /// \param along  not along the normal; the first direction, so that none of space is preferred
+  bool is_narrow(const Vector3& centre, const Vector3& normal, const Vector3& along) const {
     constexpr int kDirections = 4;
-    const Vector3 x = normal.unitOrthogonal(), y = normal.cross(x);
+    const Vector3 y = normal.cross(along).normalized(), x = y.cross(normal);
     for (int i = 0; i < kDirections; ++i) {
       const double angle = kPi * i / kDirections;
       const Vector3 d = reach_ * (std::cos(angle) * x + std::sin(angle) * y);
@@ -81,7 +82,7 @@ void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, doubl
     const Vector3 normal = vertex_normal(mesh, v);
     if (!(normal.squaredNorm() > 0.5)) continue;
     const double r = probe.radius(mesh.position(v), normal, enough);
-    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal)) continue;
+    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal, mesh.edge_vector(mesh.outgoing(v)))) continue;
     target[v] = std::min(target[v], std::max(r * kPi / 2, least_ratio * length));
   }
 }

@@ -32,6 +32,9 @@ double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b)
   return (p - a - t * e).norm();
 }
 
+/// What is larger by less is as large: halves of edges and of triangles are, and rounding must not tell them apart.
+constexpr double kMore = 1 + 1e-9;
+
 double cotangent_at(const Vector3& apex, const Vector3& a, const Vector3& b) {
   const double sine = (a - apex).cross(b - apex).norm(), cosine = (a - apex).dot(b - apex);
   if (sine > 0) return cosine / sine;
@@ -128,8 +131,8 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const double new_shape = shape(q, x, y);
     turns |= after.dot(reference) < kSameCosine * size_after * reference.norm();
     keeps = size_after > 0 && after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
-            (new_shape >= kPoorShape || new_shape > worst_before) &&
-            ((x - q).norm() <= too_long || (x - q).norm() <= (x - p).norm() || on_curve);
+            (new_shape >= kPoorShape || new_shape > kMore * worst_before) &&
+            ((x - q).norm() <= too_long || (x - q).norm() <= kMore * (x - p).norm() || on_curve);
     nearest2 = std::min(nearest2, (nearest_on_triangle(p, q, x, y) - p).squaredNorm());
   });
   if (!keeps) return false;
@@ -191,7 +194,7 @@ bool SurfaceRemesher::flip_keeps_shape(int h) const {
   // Many small changes add up: the new diagonal must lie as near to the input as an edge may, or as the old one.
   const int v = vertex_[mesh_.from(h)].on_feature ? mesh_.to(h) : mesh_.from(h);
   const double strays2 = walked_distance2(v, 0.5 * (c + d));
-  return strays2 <= std::pow(kSurfaceError * target, 2) || strays2 <= walked_distance2(v, 0.5 * (a + b));
+  return strays2 <= std::pow(kSurfaceError * target, 2) || strays2 <= kMore * walked_distance2(v, 0.5 * (a + b));
 }
 
 /// Squared distance from p to the input about v's face there, found by walking: never too small.
@@ -229,7 +232,7 @@ bool SurfaceRemesher::move_keeps_surface(int v, const SurfacePoint& q) const {
     const Vector3 after = (x - q.position).cross(y - q.position);
     if (!keeps || after.dot(n) > kSameCosine * after.norm()) return;
     const double strays2 = index_.walk((q.position + x + y) / 3, q.face).squared_distance;
-    if (strays2 > limit * limit) keeps = strays2 <= index_.walk((old + x + y) / 3, q.face).squared_distance;
+    if (strays2 > limit * limit) keeps = strays2 <= kMore * index_.walk((old + x + y) / 3, q.face).squared_distance;
   });
   return keeps;
 }

@@ -92,7 +92,7 @@ void SurfaceRemesher::collapse_short_edges(double longest) {
 
 void SurfaceRemesher::split_long_edges(double longest) {
   struct Long {
-    double length2;
+    float length2;  // single precision: halves of an edge are equal, however the surface lies in space
     int halfedge;
   };
   std::vector<Long> edges;
@@ -102,14 +102,14 @@ void SurfaceRemesher::split_long_edges(double longest) {
     for (int h = begin; h < mesh_.halfedge_slots(); ++h) {
       if (!stands_for_edge(h) || is_feature(h)) continue;
       const double length2 = mesh_.edge_vector(h).squaredNorm(), limit = longest * options_.edge_fraction * edge_target(h);
-      if (length2 > limit * limit) edges.push_back({length2, h});
+      if (length2 > limit * limit) edges.push_back({static_cast<float>(length2), h});
     }
     if (edges.empty()) return;
     std::sort(edges.begin(), edges.end(), [](const Long& x, const Long& y) {
       return x.length2 != y.length2 ? x.length2 > y.length2 : x.halfedge < y.halfedge;
     });
     // Only the longest third of the lengths in one pass: splitting long sides first keeps the new triangles compact.
-    const double least = edges.front().length2 * 0.25;
+    const float least = edges.front().length2 * 0.2499f;  // halves of the longest are in
     for (const Long& e : edges) {
       if (e.length2 < least) break;
       checkpoint();
