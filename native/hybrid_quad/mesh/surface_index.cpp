@@ -93,7 +93,7 @@ struct SurfaceIndex::Tree {
   void take(const Vector3& p, int f, SurfacePoint& best) const {
     const Vector3 q = nearest_on_face(p, f);
     const double d = (q - p).squaredNorm();
-    if (f < best.face ? !(d < with_rounding(best.squared_distance)) : !(with_rounding(d) < best.squared_distance)) return;
+    if (f < best.face ? !(d < with_rounding(best.squared_distance, p)) : !(with_rounding(d, p) < best.squared_distance)) return;
     best = {f, q, d};
   }
   void build();
@@ -185,7 +185,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
   stack[size++] = {0, tree.nodes[0].box.squared_distance(p)};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (!(entry.squared_distance < with_rounding(best.squared_distance))) continue;
+    if (!(entry.squared_distance < with_rounding(best.squared_distance, p))) continue;
     const Node& node = tree.nodes[entry.node];
     if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
     if (node.count > 0) {
@@ -196,7 +196,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
     Entry far{node.right, tree.nodes[node.right].box.squared_distance(p)};
     if (far.squared_distance < near.squared_distance) std::swap(near, far);
-    const double limit = with_rounding(best.squared_distance);
+    const double limit = with_rounding(best.squared_distance, p);
     if (far.squared_distance < limit) stack[size++] = far;
     if (near.squared_distance < limit) stack[size++] = near;
   }

@@ -15,9 +15,11 @@ struct SurfacePoint {
   double squared_distance = 0;
 };
 
-/// The most that a squared distance is with rounding (coordinates between -1 and 1). Of what differs by no more, the face that
-/// comes first counts as the nearest, so that how a surface lies in space makes no difference.
-inline double with_rounding(double squared_distance) { return squared_distance * (1 + 1e-12) + 1e-19; }
+/// The most that a squared distance from p is with rounding. Of what differs by no more, the face that comes first counts
+/// as the nearest, so that how a surface lies in space makes no difference.
+inline double with_rounding(double squared_distance, const Vector3& p) {
+  return squared_distance * (1 + 1e-12) + 1e-19 * p.squaredNorm();
+}
 
 /// Nearest points of a triangle mesh: a bounding-volume tree with an optional filter by region and by normal.
 class SurfaceIndex {

@@ -92,7 +92,7 @@ SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& r
     if (!region.empty() && region[f] != region[start]) return false;
     int where;
     const SurfacePoint point = project(f, &where);
-    if (!(with_rounding(point.squared_distance) < best.squared_distance)) return false;
+    if (!(with_rounding(point.squared_distance, p) < best.squared_distance)) return false;
     best = point;
     place = where;
     return true;
