@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/surface_index.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -56,14 +57,17 @@ struct Box {
     return (low.array() <= h.array()).all() && (l.array() <= high.array()).all();
   }
   double squared_distance(const Vector3& p) const {
-    return ((low - p).cwiseMax(p - high)).cwiseMax(0.0).squaredNorm();
+    const auto beyond = [&](int i) { return std::max(std::max(low[i] - p[i], p[i] - high[i]), 0.0); };
+    const double x = beyond(0), y = beyond(1), z = beyond(2);
+    return x * x + (y * y + z * z);
   }
 };
 
-struct Node {
+/// A cache line.
+struct alignas(64) Node {
   Box box;
   int first = 0, count = 0;  ///< a leaf's range of `order`; count = 0: an inner node
-  int left = -1, right = -1;
+  int left = -1;             ///< the other child is next to it
   int region = -1;           ///< the only region below, or -1 if there are several
 };
 
@@ -74,6 +78,7 @@ struct SurfaceIndex::Tree {
   std::vector<int> region;
   std::vector<Vector3> normal;
   std::vector<int> order;
+  std::vector<std::array<Vector3, 3>> corners;  ///< of the faces in `order`
   std::vector<Node> nodes;
 
   bool passes(int f, const Filter& filter) const {
@@ -85,17 +90,15 @@ struct SurfaceIndex::Tree {
     for (const int v : mesh.face(f)) box.add({mesh.position(v), mesh.position(v)});
     return box;
   }
-  Vector3 nearest_on_face(const Vector3& p, int f) const {
-    const auto& t = mesh.face(f);
-    return nearest_on_triangle(p, mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
-  }
-  /// Takes face f if it is nearer than what `best` holds.
-  bool take(const Vector3& p, int f, SurfacePoint& best) const {
-    const Vector3 q = nearest_on_face(p, f);
+  /// Takes face f with the given corners if it is nearer than what `best` holds.
+  static void take(const Vector3& p, int f, const std::array<Vector3, 3>& corner, SurfacePoint& best) {
+    const Vector3 q = nearest_on_triangle(p, corner[0], corner[1], corner[2]);
     const double d = (q - p).squaredNorm();
-    if (!(d < best.squared_distance)) return false;
-    best = {f, q, d};
-    return true;
+    if (d < best.squared_distance) best = {f, q, d};
+  }
+  std::array<Vector3, 3> corners_of(int f) const {
+    const auto& t = mesh.face(f);
+    return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
   void build();
 };
@@ -148,10 +151,11 @@ void SurfaceIndex::Tree::build() {
     const int left = static_cast<int>(nodes.size());
     nodes.resize(nodes.size() + 2);
     nodes[task.node].left = left;
-    nodes[task.node].right = left + 1;
     tasks.push_back({left, task.begin, half});
     tasks.push_back({left + 1, half, task.end});
   }
+  corners.reserve(face_count);
+  for (const int f : order) corners.push_back(corners_of(f));
 }
 
 SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : tree_(std::make_unique<Tree>()) {
@@ -169,12 +173,12 @@ const TriangleMesh& SurfaceIndex::mesh() const { return tree_->mesh; }
 SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const {
   const Tree& tree = *tree_;
   SurfacePoint best;
-  best.squared_distance = std::numeric_limits<double>::infinity();
+  best.squared_distance = filter.within * filter.within;
   if (tree.nodes.empty()) return best;
   if (filter.hint >= 0 && tree.passes(filter.hint, filter)) {
     const SurfacePoint walked = walk(p, filter.hint);
-    if (tree.passes(walked.face, filter)) best = walked;
-    else tree.take(p, filter.hint, best);
+    if (!tree.passes(walked.face, filter)) Tree::take(p, filter.hint, tree.corners_of(filter.hint), best);
+    else if (walked.squared_distance < best.squared_distance) best = walked;
   }
 
   struct Entry {
@@ -191,11 +195,11 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
     if (node.count > 0) {
       for (int i = node.first; i < node.first + node.count; ++i)
-        if (tree.passes(tree.order[i], filter)) tree.take(p, tree.order[i], best);
+        if (tree.passes(tree.order[i], filter)) Tree::take(p, tree.order[i], tree.corners[i], best);
       continue;
     }
     Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
-    Entry far{node.right, tree.nodes[node.right].box.squared_distance(p)};
+    Entry far{node.left + 1, tree.nodes[node.left + 1].box.squared_distance(p)};
     if (far.squared_distance < near.squared_distance) std::swap(near, far);
     if (far.squared_distance < best.squared_distance) stack[size++] = far;
     if (near.squared_distance < best.squared_distance) stack[size++] = near;
@@ -214,7 +218,7 @@ bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std
     const Node& node = tree.nodes[stack[--size]];
     if (!node.box.meets(low, high)) continue;
     if (node.count == 0) {
-      stack[size++] = node.right;
+      stack[size++] = node.left + 1;
       stack[size++] = node.left;
       continue;
     }
