@@ -13,6 +13,7 @@ constexpr double kCurveError = 0.02;     ///< over h: the same for feature curve
 constexpr double kThin = 0.01;           ///< over h: the normal of a face of less height says nothing
 constexpr double kNormalCosine = 0.7;    ///< a face may turn by 45 degrees when a vertex goes
 constexpr double kSameCosine = 0.97;    ///< normals that agree so well cannot hide that a surface leaves the input
+constexpr double kStill = 0.03;          ///< over h: vertices do not move by less
 constexpr double kPoorShape = 0.25;      ///< shape below which a collapse may not make a triangle worse
 
 /// 1 for an equilateral triangle, 0 for one without area.
@@ -262,6 +263,7 @@ void SurfaceRemesher::relax_vertex(int v) {
   if (!(weight > 0) || !(length2 > 0)) return;
   Vector3 step = sum / weight - p;
   step -= n * (n.dot(step) / length2);
+  if (step.squaredNorm() < std::pow(kStill * vertex_[v].target, 2)) return;
   const Vector3 normal = n.normalized();
   for (const double part : {1.0, 0.5, 0.25}) {
     const SurfacePoint q = project(v, normal, p + part * step);

@@ -51,6 +51,7 @@ void SurfaceRemesher::run() {
   split_feature_edges();
   for (int round = 0; round < kRounds; ++round) {
     split_long_edges(kLong);
+    if (round == 0) renumber();
     flip_edges();
     collapse_short_edges(kShort);
     flip_edges();
@@ -74,7 +75,18 @@ void SurfaceRemesher::run() {
   split_edges_between_features();
   flip_edges();
   relax();
+  renumber();
   context_.checkpoint(0.95);
+}
+
+/// Splitting puts what is near on the surface far apart in memory, where every stage then waits for it.
+void SurfaceRemesher::renumber() {
+  EditableMesh::Compacted compacted = mesh_.compacted_by_neighbourhood();
+  std::vector<VertexData> vertex;
+  vertex.reserve(compacted.vertex_slot.size());
+  for (const int slot : compacted.vertex_slot) vertex.push_back(vertex_[slot]);
+  vertex_ = std::move(vertex);
+  mesh_ = EditableMesh(compacted.mesh, std::move(compacted.halfedge_curve), std::move(compacted.face_region));
 }
 
 void SurfaceRemesher::collapse_short_edges(double longest) {

@@ -46,6 +46,7 @@ class SurfaceRemesher {
   void split_edges_between_features();
   void flip_edges();
   void relax();
+  void renumber();
   std::vector<std::vector<int>> free_vertices_by_colour() const;
 
   // One operation.
