@@ -101,22 +101,23 @@ struct SurfaceIndex::Tree {
     return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
   void build();
+  void bound_nodes();
 };
 
 void SurfaceIndex::Tree::build() {
   const int face_count = mesh.face_count();
-  std::vector<Box> boxes(face_count);
-  std::vector<Vector3> middle(face_count);
-  normal.resize(face_count);
-  order.resize(face_count);
-  for (int f = 0; f < face_count; ++f) {
-    boxes[f] = box_of(f);
-    middle[f] = 0.5 * (boxes[f].low + boxes[f].high);
-    normal[f] = mesh.normal(f);
-    order[f] = f;
-  }
   if (face_count == 0) return;
-
+  struct Item {
+    Vector3 middle;
+    int face;
+  };
+  std::vector<Item> items(face_count);
+  normal.resize(face_count);
+  for (int f = 0; f < face_count; ++f) {
+    const Box box = box_of(f);
+    items[f] = {0.5 * (box.low + box.high), f};
+    normal[f] = mesh.normal(f);
+  }
   struct Task {
     int node, begin, end;
   };
@@ -125,28 +126,19 @@ void SurfaceIndex::Tree::build() {
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    Box box, middles;
-    int only_region = region.empty() ? -1 : region[order[task.begin]];
-    for (int i = task.begin; i < task.end; ++i) {
-      const int f = order[i];
-      box.add(boxes[f]);
-      middles.low = middles.low.cwiseMin(middle[f]);
-      middles.high = middles.high.cwiseMax(middle[f]);
-      if (!region.empty() && region[f] != only_region) only_region = -1;
-    }
-    nodes[task.node].box = box;
-    nodes[task.node].region = only_region;
     if (task.end - task.begin <= kLeafFaces) {
       nodes[task.node].first = task.begin;
       nodes[task.node].count = task.end - task.begin;
       continue;
     }
+    Box middles;
+    for (int i = task.begin; i < task.end; ++i) middles.add({items[i].middle, items[i].middle});
     int axis = 0;
     (middles.high - middles.low).maxCoeff(&axis);
     const int half = (task.begin + task.end) / 2;
-    std::nth_element(order.begin() + task.begin, order.begin() + half, order.begin() + task.end,
-                     [&middle, axis](int f, int g) {
-                       return middle[f][axis] != middle[g][axis] ? middle[f][axis] < middle[g][axis] : f < g;
+    std::nth_element(items.begin() + task.begin, items.begin() + half, items.begin() + task.end,
+                     [axis](const Item& x, const Item& y) {
+                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.face < y.face;
                      });
     const int left = static_cast<int>(nodes.size());
     nodes.resize(nodes.size() + 2);
@@ -154,8 +146,31 @@ void SurfaceIndex::Tree::build() {
     tasks.push_back({left, task.begin, half});
     tasks.push_back({left + 1, half, task.end});
   }
+  order.reserve(face_count);
   corners.reserve(face_count);
-  for (const int f : order) corners.push_back(corners_of(f));
+  for (const Item& item : items) {
+    order.push_back(item.face);
+    corners.push_back(corners_of(item.face));
+  }
+  bound_nodes();
+}
+
+/// Boxes and regions, children before their parents.
+void SurfaceIndex::Tree::bound_nodes() {
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    if (node->count == 0) {
+      const Node &left = nodes[node->left], &right = nodes[node->left + 1];
+      node->box = left.box;
+      node->box.add(right.box);
+      node->region = left.region == right.region ? left.region : -1;
+      continue;
+    }
+    node->region = region.empty() ? -1 : region[order[node->first]];
+    for (int i = node->first; i < node->first + node->count; ++i) {
+      node->box.add(box_of(order[i]));
+      if (!region.empty() && region[order[i]] != node->region) node->region = -1;
+    }
+  }
 }
 
 SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : tree_(std::make_unique<Tree>()) {
