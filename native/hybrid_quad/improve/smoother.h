@@ -20,7 +20,8 @@ struct SmootherOptions {
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
 };
 
-/// Moves vertices by Newton steps on the corner energy of the quads around (Gauss-Seidel), free ones over the input surface, curve ones along their curves.
+/// Moves vertices by Newton steps on the corner energy of the quads around (Gauss-Seidel), free ones over the input
+/// surface, curve ones along their curves.
 class Smoother {
  public:
   Smoother(Workpiece& piece, const SmootherOptions& options);
