@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/improve/vertex_colours.h"
 
 namespace hybrid_quad {
 
@@ -351,30 +352,9 @@ void Smoother::relax(const std::vector<int>& vertices, int sweeps, double eps) {
   eps_ = kept;
 }
 
-/// Vertices in use, in groups of which no two are at one quad: each gets the first group that no neighbour is in.
-std::vector<std::vector<int>> Smoother::vertices_by_colour() const {
-  std::vector<std::vector<int>> groups;
-  std::vector<int> colour(piece_.mesh.vertex_count(), -1), taken_by;
-  for (int v = 0; v < piece_.mesh.vertex_count(); ++v) {
-    if (piece_.mesh.valence(v) == 0) continue;
-    for (const int q : piece_.mesh.quads_at(v))
-      for (const int w : piece_.mesh.quad(q))
-        if (colour[w] >= 0) taken_by[colour[w]] = v;
-    int c = 0;
-    while (c < static_cast<int>(taken_by.size()) && taken_by[c] == v) ++c;
-    if (c == static_cast<int>(taken_by.size())) {
-      taken_by.push_back(-1);
-      groups.emplace_back();
-    }
-    colour[v] = c;
-    groups[c].push_back(v);
-  }
-  return groups;
-}
-
 void Smoother::smooth(int sweeps, const RunContext& context) {
   const int n = piece_.mesh.vertex_count();
-  const std::vector<std::vector<int>> colours = vertices_by_colour();
+  const std::vector<std::vector<int>> colours = vertices_by_colour(piece_.mesh);
   std::vector<char> active(n, 1), moved(n, 0);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.checkpoint(static_cast<double>(sweep) / sweeps);

@@ -52,7 +52,6 @@ class Smoother {
   double energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const;
   GuidePull guide_pull(int v, double size) const;
   double edge_size(int v) const;
-  std::vector<std::vector<int>> vertices_by_colour() const;
   double move(int v);
   double move_free(int v, double size);
   double move_on_curve(int v, double size);
