@@ -92,6 +92,19 @@ TEST(MultifrontalCholesky, DoesNotDependOnWhereTheUnknownsAre) {
   EXPECT_LT((problem.lower.selfadjointView<Eigen::Lower>() * x + 0.5 * x - b).norm(), 1e-9 * b.norm());
 }
 
+TEST(MultifrontalCholesky, AnyNumberOfThreadsGivesTheSameBits) {
+  const Problem problem = grid_problem(150, 2, 5);
+  const auto solution = [&](int threads) {
+    RunContext context;
+    context.threads = threads;
+    MultifrontalCholesky factor(problem.lower, problem.places, context);
+    EXPECT_TRUE(factor.factorize(problem.lower, 0, context));
+    return factor.solve(some_vector(problem.lower.rows()));
+  };
+  const Eigen::VectorXd one = solution(1);
+  for (const int threads : {2, 5}) EXPECT_EQ(solution(threads), one) << threads;
+}
+
 TEST(MultifrontalCholesky, TellsWhatIsNotPositiveDefinite) {
   Problem problem = grid_problem(20, 1, 3);
   problem.lower.coeffRef(210, 210) = -1;

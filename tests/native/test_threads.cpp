@@ -1,8 +1,11 @@
 // The whole pipeline on several threads, and two runs at once: what a thread sanitizer has to see.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
+#include <vector>
 
+#include "hybrid_quad/base/parallel_forest.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "support/meshes.h"
 
@@ -19,9 +22,9 @@ PolygonSoup soup_of(const TriangleMesh& mesh) {
   return soup;
 }
 
-RemeshResult run(const PolygonSoup& soup, int threads) {
+RemeshResult run(const PolygonSoup& soup, int threads, int quads = 120) {
   RemeshOptions options;
-  options.quads = 120;
+  options.quads = quads;
   RunContext context;
   context.threads = threads;
   context.stop_requested = [] { return false; };
@@ -36,6 +39,43 @@ TEST(Threads, AnyNumberGivesTheSameBits) {
     EXPECT_EQ(many.mesh.positions, one.mesh.positions);
     EXPECT_EQ(many.mesh.quads, one.mesh.quads);
   }
+}
+
+TEST(Threads, EveryStageGivesTheSameBits) {
+  // Large enough that every stage shares its work.
+  const PolygonSoup soup = soup_of(test::capped_cylinder(40, 6));
+  const RemeshResult one = run(soup, 1, 2500), many = run(soup, 3, 2500);
+  EXPECT_EQ(many.mesh.positions, one.mesh.positions);
+  EXPECT_EQ(many.mesh.quads, one.mesh.quads);
+  EXPECT_EQ(many.report.hausdorff_percent, one.report.hausdorff_percent);
+}
+
+TEST(Threads, NodesOfAForestComeAfterTheirChildren) {
+  constexpr int kCount = 1000;
+  std::vector<int> parent(kCount, -1);
+  for (int i = 0; i + 1 < kCount; ++i) parent[i] = i % 10 == 9 ? -1 : i + 1 + (i * 7) % (kCount - i - 1);
+  std::vector<std::atomic<int>> left(kCount);
+  for (const int p : parent)
+    if (p >= 0) ++left[p];
+  std::atomic<int> done{0}, early{0};
+  parallel_forest(parent, 4, [&](int i) {
+    early += left[i] != 0;
+    if (parent[i] >= 0) --left[parent[i]];
+    ++done;
+  });
+  EXPECT_EQ(done, kCount);
+  EXPECT_EQ(early, 0);
+}
+
+TEST(Threads, WhatANodeThrowsEndsTheForest) {
+  const std::vector<int> parent{2, 2, 3, -1};
+  std::atomic<bool> root_begun{false};
+  const auto work = [&](int i) {
+    if (i == 1) throw Cancelled("here");
+    if (i == 3) root_begun = true;
+  };
+  EXPECT_THROW(parallel_forest(parent, 2, work), Cancelled);
+  EXPECT_FALSE(root_begun);
 }
 
 TEST(Threads, RunsDoNotDisturbEachOther) {

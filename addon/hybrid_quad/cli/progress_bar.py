@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 from types import TracebackType
+from typing import TYPE_CHECKING
 
-from tqdm import tqdm
+if TYPE_CHECKING:
+    from tqdm import tqdm
 
 from .messages import say
 
@@ -21,6 +23,8 @@ class ProgressBar:
         self._stage = ""
         self._bar: tqdm[None] | None = None
         if not quiet and sys.stderr.isatty():
+            from tqdm import tqdm  # takes longer to load than all else here
+
             self._bar = tqdm(
                 total=100, file=sys.stderr, leave=False, bar_format="{desc:<28} {percentage:3.0f}% |{bar}| {elapsed}"
             )

@@ -403,14 +403,19 @@ def _require_whole_header(path: Path) -> None:
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
-    np.savetxt(file, vertices, fmt="v %.17g %.17g %.17g")
-    np.savetxt(file, quads + 1, fmt="f %d %d %d %d")
+    _write_rows(file, "v %.17g %.17g %.17g\n", vertices)
+    _write_rows(file, "f %d %d %d %d\n", quads + 1)
 
 
 def _write_off(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
     file.write(f"OFF\n{len(vertices)} {len(quads)} 0\n".encode())
-    np.savetxt(file, vertices, fmt="%.17g %.17g %.17g")
-    np.savetxt(file, quads, fmt="4 %d %d %d %d")
+    _write_rows(file, "%.17g %.17g %.17g\n", vertices)
+    _write_rows(file, "4 %d %d %d %d\n", quads)
+
+
+def _write_rows(file: BinaryIO, row: str, values: FloatArray | IntArray) -> None:
+    """One line a row, several times as fast as numpy writes text."""
+    file.write((row * len(values) % tuple(values.ravel().tolist())).encode())
 
 
 def _write_ply(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

@@ -300,8 +300,10 @@ def _with_directions(
 ) -> npt.ArrayLike | None:
     """`guides`, with those of the strokes that are directions: at each place the stronger."""
     directions = [stroke for stroke in strokes if stroke.kind == "direction"]
+    if not directions:
+        return guides
     length = usual_length(points, polygons, options)
-    if not directions or not length > 0:  # no surface: the run itself says so
+    if not length > 0:  # no surface: the run itself says so
         return guides
     drawn = guides_from_strokes(points, polygons, directions, RADIUS_IN_EDGES * length if radius is None else radius)
     given = None if guides is None else np.asarray(guides, np.float64)

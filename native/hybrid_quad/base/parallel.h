@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
+
 namespace hybrid_quad {
 
 /// Calls work(i) for i in [0, count) on up to `threads` threads, the caller's among them. Each i is done once; which
@@ -31,6 +33,18 @@ void parallel_for(int count, int threads, const Work& work) {
   for (std::thread& t : pool) t.join();
   for (const std::exception_ptr& e : errors)
     if (e) std::rethrow_exception(e);
+}
+
+/// Calls work(begin, end) for the chunks of [0, count), whose size does not depend on the number of threads; each i must be
+/// independent of all others. Answers requests to stop, from any thread.
+template <class Work>
+void parallel_chunks(int count, const RunContext& context, const Work& work, int chunk = 256) {
+  RunContext each = context;  // several at once have no common progress
+  each.on_progress = nullptr;
+  parallel_for((count + chunk - 1) / chunk, context.threads, [&](int c) {
+    each.checkpoint();
+    work(c * chunk, std::min(count, (c + 1) * chunk));
+  });
 }
 
 }  // namespace hybrid_quad

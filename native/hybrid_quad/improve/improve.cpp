@@ -49,7 +49,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   if (!(piece.h > 0)) return report;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
-  report.inverted_before = static_cast<int>(tangled_quads(piece).size());
+  report.inverted_before = static_cast<int>(tangled_quads(piece, context.threads).size());
   piece.bind_all();
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
   SmootherOptions smoothing;
@@ -57,6 +57,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   smoothing.aspect_power = options.aspect_power;
   smoothing.guides = options.guides;
   smoothing.rings = options.rings;
+  smoothing.threads = context.threads;
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
@@ -97,13 +98,13 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   if (quads.quads.empty() || input.face_count() == 0) return {};
   constexpr int kAttempts = 5;
   const SurfaceIndex& judged = whole ? *whole : index;
-  Restoration restoration(quads, judged, options.usual_size);
+  Restoration restoration(quads, judged, options.usual_size, context.threads);
   QuadMesh best;
   ImproveReport report;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     QuadMesh improved = quads;
     ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, judged, options, context);
-    const std::vector<int> flawed = flawed_quads(improved, judged, options.usual_size);
+    const std::vector<int> flawed = flawed_quads(improved, judged, options.usual_size, context.threads);
     now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();

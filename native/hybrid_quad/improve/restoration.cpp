@@ -22,9 +22,9 @@ double reach_of(const QuadMesh& mesh, int q, const Vector3& centre) {
 
 }  // namespace
 
-Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double usual_size)
+Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double usual_size, int threads)
     : extracted_(extracted), locked_(extracted.quads.size(), 0), flawed_(extracted.quads.size(), 0) {
-  for (const int q : flawed_quads(extracted, index, usual_size)) {
+  for (const int q : flawed_quads(extracted, index, usual_size, threads)) {
     flawed_[q] = 1;
     ++flawed_before_;
   }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/improve/vertex_colours.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -12,6 +15,7 @@ constexpr double kSmallestEps = 1e-3;
 constexpr double kLongestStep = 0.4;  ///< in edge lengths
 constexpr int kBacktracks = 4;
 constexpr double kBacktrack = 0.35;
+constexpr int kMoves = 200, kSums = 5000;  ///< that are worth a thread
 
 Vector3 unit_or(const Vector3& v, const Vector3& otherwise) {
   const double length = v.norm();
@@ -27,6 +31,16 @@ struct Smoother::Derivatives {
 
 Smoother::Smoother(Workpiece& piece, const SmootherOptions& options) : piece_(piece), options_(options) {
   update_frames(true);
+}
+
+/// Calls work(i) for every entry, each independent of the others, on all threads.
+/// \param chunk  so many are worth a thread
+template <class Work>
+void Smoother::for_each(const std::vector<int>& list, int chunk, const Work& work) const {
+  const int count = static_cast<int>(list.size());
+  parallel_for((count + chunk - 1) / chunk, options_.threads, [&](int c) {
+    for (int i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) work(list[i]);
+  });
 }
 
 void Smoother::update_reference(int q) {
@@ -90,13 +104,14 @@ void Smoother::update_frames(const std::vector<int>& quads, bool with_references
   frames_.resize(piece_.mesh.quad_count());
   own_area_.resize(piece_.mesh.quad_count(), piece_.h * piece_.h);
   centre_face_.resize(piece_.mesh.quad_count(), -1);
-  for (const int q : quads)
-    if (piece_.mesh.alive(q)) {
-      if (with_references) update_reference(q);
-      update_shape(q);
-    }
-  for (const int q : quads)
+  for_each(quads, with_references ? kMoves : kSums, [&](int q) {
+    if (!piece_.mesh.alive(q)) return;
+    if (with_references) update_reference(q);
+    update_shape(q);
+  });
+  for_each(quads, kSums, [&](int q) {
     if (piece_.mesh.alive(q)) update_area(q);
+  });
 }
 
 double Smoother::signed_quality(int q) const {
@@ -339,7 +354,8 @@ void Smoother::relax(const std::vector<int>& vertices, int sweeps, double eps) {
 
 void Smoother::smooth(int sweeps, const RunContext& context) {
   const int n = piece_.mesh.vertex_count();
-  std::vector<char> active(n, 1), next_active(n, 0);
+  const std::vector<std::vector<int>> colours = vertices_by_colour(piece_.mesh);
+  std::vector<char> active(n, 1), moved(n, 0);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.checkpoint(static_cast<double>(sweep) / sweeps);
     update_frames(sweep == 0 || sweep == 4 || sweep == 12);
@@ -348,17 +364,18 @@ void Smoother::smooth(int sweeps, const RunContext& context) {
       eps_ = !tangled ? kSmallestEps : sweep == 0 ? 0.3 : sweep == 4 ? 0.1 : 0.03;
       if (tangled) std::fill(active.begin(), active.end(), 1);
     }
-    std::fill(next_active.begin(), next_active.end(), 0);
+    std::fill(moved.begin(), moved.end(), 0);
+    for (const std::vector<int>& vertices : colours)
+      for_each(vertices, kMoves, [&](int v) { moved[v] = active[v] && move(v) > options_.still; });
+    std::fill(active.begin(), active.end(), 0);
     bool any = false;
     for (int v = 0; v < n; ++v) {
-      if ((v & 4095) == 0) context.checkpoint(static_cast<double>(sweep) / sweeps);
-      if (!active[v] || !(move(v) > options_.still)) continue;
+      if (!moved[v]) continue;
       any = true;
       for (const int q : piece_.mesh.quads_at(v))
-        for (const int w : piece_.mesh.quad(q)) next_active[w] = 1;
+        for (const int w : piece_.mesh.quad(q)) active[w] = 1;
     }
     if (!any && sweep > 8) break;
-    active.swap(next_active);
   }
   eps_ = kSmallestEps;
   update_frames(false);

@@ -16,18 +16,19 @@ struct SmootherOptions {
   const GuideMap* guides = nullptr;  ///< on the input, may be null
   double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape
   const RingPulls* rings = nullptr;  ///< may be null
+  int threads = 1;               ///< results do not depend on it
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
 };
 
-/// Moves vertices one at a time by Newton steps on the corner energy of the quads around (Gauss-Seidel in vertex order),
-/// free ones over the input surface, curve ones along their curves.
+/// Moves vertices by Newton steps on the corner energy of the quads around (Gauss-Seidel), free ones over the input
+/// surface, curve ones along their curves.
 class Smoother {
  public:
   Smoother(Workpiece& piece, const SmootherOptions& options);
 
-  /// Sweeps over all vertices; the regularisation shrinks as the mesh untangles.
+  /// Sweeps over all vertices, by colours without a quad in common; the regularisation shrinks as the mesh untangles.
   void smooth(int sweeps, const RunContext& context);
-  /// Sweeps over some vertices (ascending) with a given regularisation, everything else fixed.
+  /// Sweeps over some vertices one at a time (ascending) with a given regularisation, everything else fixed.
   void relax(const std::vector<int>& vertices, int sweeps, double eps);
 
   /// Frames of all quads / of some, from the positions as they are.
@@ -41,6 +42,8 @@ class Smoother {
 
  private:
   struct Derivatives;
+  template <class Work>
+  void for_each(const std::vector<int>& list, int chunk, const Work& work) const;
   void update_reference(int q);
   void update_shape(int q);
   void update_area(int q);

@@ -77,7 +77,7 @@ int untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
 
 }  // namespace
 
-std::vector<int> tangled_quads(const Workpiece& piece) {
+std::vector<int> tangled_quads(const Workpiece& piece, int threads) {
   QuadMesh mesh;
   mesh.positions = piece.mesh.positions;
   std::vector<int> id;
@@ -87,7 +87,7 @@ std::vector<int> tangled_quads(const Workpiece& piece) {
     id.push_back(q);
   }
   std::vector<int> tangled;
-  for (const int q : inverted_quads(mesh, piece.index)) tangled.push_back(id[q]);
+  for (const int q : inverted_quads(mesh, piece.index, 0, threads)) tangled.push_back(id[q]);
   for (const int q : id)
     if (own_quality(piece.mesh, q) <= 0) tangled.push_back(q);
   return sorted_unique(std::move(tangled));
@@ -97,13 +97,13 @@ int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context) {
   constexpr int kRounds = 4, kEffort = 3, kLeastEffort = 2000;
   // Vertices to relax in all places together: where the whole mesh is bad, no place can be mended alone.
   int effort = kLeastEffort + kEffort * piece.mesh.vertex_count();
-  std::vector<int> tangled = tangled_quads(piece);
+  std::vector<int> tangled = tangled_quads(piece, context.threads);
   for (int round = 0; round < kRounds && !tangled.empty(); ++round) {
     for (const int q : tangled) {
       context.checkpoint(static_cast<double>(round) / kRounds);
       if (effort > 0) effort -= untangle_place(piece, smoother, q, 1 + round);
     }
-    tangled = tangled_quads(piece);
+    tangled = tangled_quads(piece, context.threads);
   }
   return static_cast<int>(tangled.size());
 }

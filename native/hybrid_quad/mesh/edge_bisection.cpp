@@ -38,27 +38,44 @@ std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges,
   return number;
 }
 
+/// Whether some edges have both ends in common.
+bool has_edges_with_common_ends(const EditableMesh& mesh) {
+  // Half-edges, one an edge, sorted by their lower ends.
+  std::vector<int> begin(mesh.vertex_slots() + 1, 0), seen_from(mesh.vertex_slots(), -1);
+  const auto visit = [&](const auto& use) {
+    for (int h = 0; h < mesh.halfedge_slots(); ++h)
+      if (mesh.is_face(h / 3) && mesh.opposite(h) < h) use(std::min(mesh.from(h), mesh.to(h)), std::max(mesh.from(h), mesh.to(h)));
+  };
+  visit([&](int low, int) { ++begin[low + 1]; });
+  for (int v = 0; v < mesh.vertex_slots(); ++v) begin[v + 1] += begin[v];
+  std::vector<int> high_ends(begin.back()), end(begin.begin(), begin.end() - 1);
+  visit([&](int low, int high) { high_ends[end[low]++] = high; });
+  for (int v = 0; v < mesh.vertex_slots(); ++v)
+    for (int i = begin[v]; i < begin[v + 1]; ++i) {
+      if (seen_from[high_ends[i]] == v) return true;
+      seen_from[high_ends[i]] = v;
+    }
+  return false;
+}
+
 /// Halves edges that have both ends in common with another until there are none: what comes after knows edges by their ends.
 /// Cuts at non-manifold edges leave such edges.
 void split_edges_with_common_ends(EditableMesh& edited) {
-  for (;;) {
+  while (has_edges_with_common_ends(edited)) {
     std::vector<std::pair<std::array<int, 2>, int>> edges;
     for (int h = 0; h < edited.halfedge_slots(); ++h)
       if (edited.is_face(h / 3) && edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
     std::sort(edges.begin(), edges.end());
     // One at a time of each face: splitting renames half-edges.
     std::vector<char> is_touched(edited.face_slots(), 0);
-    bool any = false;
     for (std::size_t i = 1; i < edges.size(); ++i) {
       if (edges[i].first != edges[i - 1].first) continue;
-      any = true;
       const int h = edges[i].second, o = edited.opposite(h);
       if (is_touched[h / 3] || (o >= 0 && is_touched[o / 3])) continue;
       is_touched[h / 3] = 1;
       if (o >= 0) is_touched[o / 3] = 1;
       edited.split_edge(h, 0.5 * (edited.position(edited.from(h)) + edited.position(edited.to(h))));
     }
-    if (!any) return;
   }
 }
 

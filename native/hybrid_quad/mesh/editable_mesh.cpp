@@ -195,23 +195,60 @@ void EditableMesh::collapse(int h) {
 }
 
 EditableMesh::Compacted EditableMesh::compacted() const {
+  std::vector<int> vertices, faces;
+  for (int v = 0; v < vertex_slots(); ++v)
+    if (is_vertex(v)) vertices.push_back(v);
+  for (int f = 0; f < face_slots(); ++f)
+    if (is_face(f)) faces.push_back(f);
+  return compacted_in_order(std::move(vertices), std::move(faces));
+}
+
+EditableMesh::Compacted EditableMesh::compacted_by_neighbourhood() const {
+  std::vector<int> vertices, faces = faces_by_neighbourhood();
+  std::vector<char> seen(vertex_slots(), 0);
+  for (const int f : faces)
+    for (int h = 3 * f; h < 3 * f + 3; ++h) {
+      if (seen[origin_[h]]) continue;
+      seen[origin_[h]] = 1;
+      vertices.push_back(origin_[h]);
+    }
+  return compacted_in_order(std::move(vertices), std::move(faces));
+}
+
+std::vector<int> EditableMesh::faces_by_neighbourhood() const {
+  std::vector<int> order;
+  std::vector<char> seen(face_slots(), 0);
+  const auto reach = [&](int f) {
+    if (seen[f]) return;
+    seen[f] = 1;
+    order.push_back(f);
+  };
+  std::size_t done = 0;
+  for (int seed = 0; seed < face_slots(); ++seed) {
+    if (is_face(seed)) reach(seed);
+    for (; done < order.size(); ++done)
+      for (int h = 3 * order[done]; h < 3 * order[done] + 3; ++h)
+        if (opposite_[h] >= 0) reach(opposite_[h] / 3);
+  }
+  return order;
+}
+
+EditableMesh::Compacted EditableMesh::compacted_in_order(std::vector<int> vertices, std::vector<int> slots) const {
   Compacted result;
+  result.vertex_slot = std::move(vertices);
+  result.face_slot = std::move(slots);
   std::vector<int> new_vertex(vertex_slots(), -1), new_face(face_slots(), -1);
   std::vector<Vector3> positions;
-  for (int v = 0; v < vertex_slots(); ++v)
-    if (is_vertex(v)) {
-      new_vertex[v] = static_cast<int>(positions.size());
-      positions.push_back(positions_[v]);
-      result.vertex_slot.push_back(v);
-    }
+  for (const int v : result.vertex_slot) {
+    new_vertex[v] = static_cast<int>(positions.size());
+    positions.push_back(positions_[v]);
+  }
   std::vector<std::array<int, 3>> faces;
-  for (int f = 0; f < face_slots(); ++f)
-    if (is_face(f)) {
-      new_face[f] = static_cast<int>(faces.size());
-      faces.push_back({new_vertex[origin_[3 * f]], new_vertex[origin_[3 * f + 1]], new_vertex[origin_[3 * f + 2]]});
-      result.face_slot.push_back(f);
-      result.face_region.push_back(region_[f]);
-    }
+  for (const int f : result.face_slot) {
+    new_face[f] = static_cast<int>(faces.size());
+    faces.push_back({new_vertex[origin_[3 * f]], new_vertex[origin_[3 * f + 1]], new_vertex[origin_[3 * f + 2]]});
+    result.face_region.push_back(region_[f]);
+  }
   std::vector<int> opposite;
   opposite.reserve(3 * faces.size());
   for (const int f : result.face_slot)

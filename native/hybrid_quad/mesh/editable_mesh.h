@@ -66,8 +66,12 @@ class EditableMesh {
     std::vector<int> vertex_slot, face_slot;  ///< where each vertex and face of `mesh` was
   };
   Compacted compacted() const;
+  /// The same, numbered by a breadth-first search over the faces: what is near on the surface is near in memory.
+  Compacted compacted_by_neighbourhood() const;
 
  private:
+  Compacted compacted_in_order(std::vector<int> vertex_slots, std::vector<int> face_slots) const;
+  std::vector<int> faces_by_neighbourhood() const;
   void glue(int h, int o, int curve);
   void update_outgoing(int h, bool may_open = false);
   bool has_more_faces(int v, int count) const;

@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/surface_index.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -56,14 +57,17 @@ struct Box {
     return (low.array() <= h.array()).all() && (l.array() <= high.array()).all();
   }
   double squared_distance(const Vector3& p) const {
-    return ((low - p).cwiseMax(p - high)).cwiseMax(0.0).squaredNorm();
+    const auto beyond = [&](int i) { return std::max(std::max(low[i] - p[i], p[i] - high[i]), 0.0); };
+    const double x = beyond(0), y = beyond(1), z = beyond(2);
+    return x * x + (y * y + z * z);
   }
 };
 
-struct Node {
+/// A cache line.
+struct alignas(64) Node {
   Box box;
   int first = 0, count = 0;  ///< a leaf's range of `order`; count = 0: an inner node
-  int left = -1, right = -1;
+  int left = -1;             ///< the other child is next to it
   int region = -1;           ///< the only region below, or -1 if there are several
 };
 
@@ -74,6 +78,7 @@ struct SurfaceIndex::Tree {
   std::vector<int> region;
   std::vector<Vector3> normal;
   std::vector<int> order;
+  std::vector<std::array<Vector3, 3>> corners;  ///< of the faces in `order`
   std::vector<Node> nodes;
 
   bool passes(int f, const Filter& filter) const {
@@ -85,34 +90,35 @@ struct SurfaceIndex::Tree {
     for (const int v : mesh.face(f)) box.add({mesh.position(v), mesh.position(v)});
     return box;
   }
-  Vector3 nearest_on_face(const Vector3& p, int f) const {
-    const auto& t = mesh.face(f);
-    return nearest_on_triangle(p, mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
-  }
-  /// Takes face f if it is nearer than what `best` holds, or as near and comes first.
-  void take(const Vector3& p, int f, SurfacePoint& best) const {
-    const Vector3 q = nearest_on_face(p, f);
+  /// Takes face f with the given corners if it is nearer than what `best` holds, or as near and comes first.
+  static void take(const Vector3& p, int f, const std::array<Vector3, 3>& corner, SurfacePoint& best) {
+    const Vector3 q = nearest_on_triangle(p, corner[0], corner[1], corner[2]);
     const double d = (q - p).squaredNorm();
     if (f < best.face ? !(d < with_rounding(best.squared_distance, p)) : !(with_rounding(d, p) < best.squared_distance)) return;
     best = {f, q, d};
   }
+  std::array<Vector3, 3> corners_of(int f) const {
+    const auto& t = mesh.face(f);
+    return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
+  }
   void build();
+  void bound_nodes();
 };
 
 void SurfaceIndex::Tree::build() {
   const int face_count = mesh.face_count();
-  std::vector<Box> boxes(face_count);
-  std::vector<Vector3> middle(face_count);
-  normal.resize(face_count);
-  order.resize(face_count);
-  for (int f = 0; f < face_count; ++f) {
-    boxes[f] = box_of(f);
-    middle[f] = 0.5 * (boxes[f].low + boxes[f].high);
-    normal[f] = mesh.normal(f);
-    order[f] = f;
-  }
   if (face_count == 0) return;
-
+  struct Item {
+    Vector3 middle;
+    int face;
+  };
+  std::vector<Item> items(face_count);
+  normal.resize(face_count);
+  for (int f = 0; f < face_count; ++f) {
+    const Box box = box_of(f);
+    items[f] = {0.5 * (box.low + box.high), f};
+    normal[f] = mesh.normal(f);
+  }
   struct Task {
     int node, begin, end;
   };
@@ -121,35 +127,50 @@ void SurfaceIndex::Tree::build() {
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    Box box, middles;
-    int only_region = region.empty() ? -1 : region[order[task.begin]];
-    for (int i = task.begin; i < task.end; ++i) {
-      const int f = order[i];
-      box.add(boxes[f]);
-      middles.low = middles.low.cwiseMin(middle[f]);
-      middles.high = middles.high.cwiseMax(middle[f]);
-      if (!region.empty() && region[f] != only_region) only_region = -1;
-    }
-    nodes[task.node].box = box;
-    nodes[task.node].region = only_region;
     if (task.end - task.begin <= kLeafFaces) {
       nodes[task.node].first = task.begin;
       nodes[task.node].count = task.end - task.begin;
       continue;
     }
+    Box middles;
+    for (int i = task.begin; i < task.end; ++i) middles.add({items[i].middle, items[i].middle});
     int axis = 0;
     (middles.high - middles.low).maxCoeff(&axis);
     const int half = (task.begin + task.end) / 2;
-    std::nth_element(order.begin() + task.begin, order.begin() + half, order.begin() + task.end,
-                     [&middle, axis](int f, int g) {
-                       return middle[f][axis] != middle[g][axis] ? middle[f][axis] < middle[g][axis] : f < g;
+    std::nth_element(items.begin() + task.begin, items.begin() + half, items.begin() + task.end,
+                     [axis](const Item& x, const Item& y) {
+                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.face < y.face;
                      });
     const int left = static_cast<int>(nodes.size());
     nodes.resize(nodes.size() + 2);
     nodes[task.node].left = left;
-    nodes[task.node].right = left + 1;
     tasks.push_back({left, task.begin, half});
     tasks.push_back({left + 1, half, task.end});
+  }
+  order.reserve(face_count);
+  corners.reserve(face_count);
+  for (const Item& item : items) {
+    order.push_back(item.face);
+    corners.push_back(corners_of(item.face));
+  }
+  bound_nodes();
+}
+
+/// Boxes and regions, children before their parents.
+void SurfaceIndex::Tree::bound_nodes() {
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    if (node->count == 0) {
+      const Node &left = nodes[node->left], &right = nodes[node->left + 1];
+      node->box = left.box;
+      node->box.add(right.box);
+      node->region = left.region == right.region ? left.region : -1;
+      continue;
+    }
+    node->region = region.empty() ? -1 : region[order[node->first]];
+    for (int i = node->first; i < node->first + node->count; ++i) {
+      node->box.add(box_of(order[i]));
+      if (!region.empty() && region[order[i]] != node->region) node->region = -1;
+    }
   }
 }
 
@@ -168,12 +189,12 @@ const TriangleMesh& SurfaceIndex::mesh() const { return tree_->mesh; }
 SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const {
   const Tree& tree = *tree_;
   SurfacePoint best;
-  best.squared_distance = std::numeric_limits<double>::infinity();
+  best.squared_distance = filter.within * filter.within;
   if (tree.nodes.empty()) return best;
   if (filter.hint >= 0 && tree.passes(filter.hint, filter)) {
     const SurfacePoint walked = walk(p, filter.hint);
-    if (tree.passes(walked.face, filter)) best = walked;
-    else tree.take(p, filter.hint, best);
+    if (!tree.passes(walked.face, filter)) Tree::take(p, filter.hint, tree.corners_of(filter.hint), best);
+    else if (walked.squared_distance < best.squared_distance) best = walked;
   }
 
   struct Entry {
@@ -190,11 +211,11 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
     if (node.count > 0) {
       for (int i = node.first; i < node.first + node.count; ++i)
-        if (tree.passes(tree.order[i], filter)) tree.take(p, tree.order[i], best);
+        if (tree.passes(tree.order[i], filter)) Tree::take(p, tree.order[i], tree.corners[i], best);
       continue;
     }
     Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
-    Entry far{node.right, tree.nodes[node.right].box.squared_distance(p)};
+    Entry far{node.left + 1, tree.nodes[node.left + 1].box.squared_distance(p)};
     if (far.squared_distance < near.squared_distance) std::swap(near, far);
     const double limit = with_rounding(best.squared_distance, p);
     if (far.squared_distance < limit) stack[size++] = far;
@@ -214,7 +235,7 @@ bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std
     const Node& node = tree.nodes[stack[--size]];
     if (!node.box.meets(low, high)) continue;
     if (node.count == 0) {
-      stack[size++] = node.right;
+      stack[size++] = node.left + 1;
       stack[size++] = node.left;
       continue;
     }

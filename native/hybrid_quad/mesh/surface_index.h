@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,8 +36,9 @@ class SurfaceIndex {
     Vector3 normal = Vector3::Zero();      ///< with min_cosine > -1: only faces whose normal agrees
     double min_cosine = -2;
     int hint = -1;                         ///< a face near the answer: a first bound by walking
+    double within = std::numeric_limits<double>::infinity();  ///< only points nearer than this
   };
-  /// The nearest point among faces that pass the filter; face = -1 if none does.
+  /// The nearest point among faces that pass the filter; face = -1 if there is none.
   SurfacePoint nearest(const Vector3& p, const Filter& filter) const;
   SurfacePoint nearest(const Vector3& p) const { return nearest(p, Filter{}); }
   /// The nearest point found by walking from face `start` downhill over neighbours, never across a region's border.

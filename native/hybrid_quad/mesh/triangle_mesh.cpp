@@ -75,17 +75,6 @@ void TriangleMesh::index_vertices() {
   }
 }
 
-Vector3 TriangleMesh::area_normal(int f) const {
-  const auto& t = faces_[f];
-  return (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
-}
-
-Vector3 TriangleMesh::normal(int f) const {
-  const Vector3 n = area_normal(f);
-  const double length = n.norm();
-  return length > 0 ? Vector3(n / length) : Vector3(0, 0, 1);
-}
-
 double TriangleMesh::total_area() const {
   double sum = 0;
   for (int f = 0; f < face_count(); ++f) sum += area(f);

@@ -54,8 +54,16 @@ class TriangleMesh {
   Vector3 edge_vector(int h) const { return positions_[to(h)] - positions_[from(h)]; }
   double edge_length(int h) const { return edge_vector(h).norm(); }
   /// Twice the area times the unit normal.
-  Vector3 area_normal(int f) const;
-  Vector3 normal(int f) const;  ///< unit; (0, 0, 1) for a face without area
+  Vector3 area_normal(int f) const {
+    const auto& t = faces_[f];
+    return (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
+  }
+  /// Unit; (0, 0, 1) for a face without area.
+  Vector3 normal(int f) const {
+    const Vector3 n = area_normal(f);
+    const double length = n.norm();
+    return length > 0 ? Vector3(n / length) : Vector3(0, 0, 1);
+  }
   double area(int f) const { return 0.5 * area_normal(f).norm(); }
   double total_area() const;
   double mean_edge_length() const;

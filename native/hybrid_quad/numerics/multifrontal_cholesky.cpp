@@ -2,7 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <atomic>
 #include <utility>
+
+#include "hybrid_quad/base/parallel_forest.h"
 
 namespace hybrid_quad {
 
@@ -21,6 +24,7 @@ MultifrontalCholesky::MultifrontalCholesky(const SparseMatrix& lower, const std:
   }
   place_entries(lower);
   find_couplings();
+  plan_tasks();
 }
 
 void MultifrontalCholesky::place_entries(const SparseMatrix& lower) {
@@ -45,12 +49,12 @@ void MultifrontalCholesky::place_entries(const SparseMatrix& lower) {
 }
 
 void MultifrontalCholesky::find_couplings() {
-  local_.assign(place_.size(), -1);
+  std::vector<int> seen(place_.size(), -1);
   for (std::size_t p = 0; p < fronts_.size(); ++p) {
     Front& front = fronts_[p];
     const auto add = [&](int k) {
-      if (k < front.end || local_[k] == static_cast<int>(p)) return;
-      local_[k] = static_cast<int>(p);
+      if (k < front.end || seen[k] == static_cast<int>(p)) return;
+      seen[k] = static_cast<int>(p);
       front.beyond.push_back(k);
     };
     for (int k = first_[front.begin]; k < first_[front.end]; ++k) add(row_[k]);
@@ -60,18 +64,49 @@ void MultifrontalCholesky::find_couplings() {
   }
 }
 
+/// Tasks of one thread: a large front alone, or all of a small subtree, which is a range as children come before parents.
+void MultifrontalCholesky::plan_tasks() {
+  constexpr double kSmall = 2e6;  // operations: about a millisecond
+  const int count = static_cast<int>(fronts_.size());
+  std::vector<double> work(count);
+  std::vector<int> parent(count, -1), begin(count), task(count);
+  for (int p = 0; p < count; ++p) {
+    const double own = fronts_[p].own(), all = own + static_cast<double>(fronts_[p].beyond.size());
+    work[p] = own * all * all;
+    begin[p] = p;
+    for (const int child : fronts_[p].children) {
+      work[p] += work[child];
+      parent[child] = p;
+      begin[p] = std::min(begin[p], begin[child]);
+    }
+  }
+  const auto is_small = [&](int p) { return work[p] <= kSmall; };
+  for (int p = 0; p < count; ++p) {
+    if (is_small(p) && parent[p] >= 0 && is_small(parent[p])) continue;
+    for (int k = is_small(p) ? begin[p] : p; k <= p; ++k) task[k] = static_cast<int>(task_end_.size());
+    task_end_.push_back(p + 1);
+  }
+  task_parent_.assign(task_end_.size(), -1);
+  for (std::size_t t = 0; t < task_end_.size(); ++t) {
+    const int above = parent[task_end_[t] - 1];
+    if (above >= 0) task_parent_[t] = task[above];
+  }
+}
+
 bool MultifrontalCholesky::factorize(const SparseMatrix& lower, double shift, const RunContext& context) {
-  constexpr std::size_t kCheckEvery = 64;
-  constexpr int kLarge = 200;
   value_.resize(entry_.size());
   for (std::size_t k = 0; k < entry_.size(); ++k) value_[k] = lower.valuePtr()[entry_[k]];
   std::vector<MatrixXd> left_over(fronts_.size());
-  for (std::size_t p = 0; p < fronts_.size(); ++p) {
-    if (p % kCheckEvery == 0 || fronts_[p].own() > kLarge)
-      context.checkpoint(static_cast<double>(p) / static_cast<double>(fronts_.size()));
-    if (!eliminate(p, shift, left_over)) return false;
-  }
-  return true;
+  RunContext each = context;  // several at once have no common progress
+  each.on_progress = nullptr;
+  context.checkpoint();
+  std::atomic<bool> is_definite{true};
+  parallel_forest(task_parent_, context.threads, [&](int t) {
+    each.checkpoint();
+    for (int p = t > 0 ? task_end_[t - 1] : 0; p < task_end_[t] && is_definite; ++p)
+      if (!eliminate(p, shift, left_over)) is_definite = false;
+  });
+  return is_definite;
 }
 
 /// \param left_over  what every front leaves to its parent, lower triangles; what its children left is used up
@@ -81,8 +116,10 @@ bool MultifrontalCholesky::eliminate(std::size_t which, double shift, std::vecto
   const int own = front.own(), beyond = static_cast<int>(front.beyond.size());
   front.column.setZero(own + beyond, own);
   rest.setZero(beyond, beyond);
-  for (int i = 0; i < beyond; ++i) local_[front.beyond[i]] = own + i;
-  const auto local = [&](int place) { return place < front.end ? place - front.begin : local_[place]; };
+  const auto local = [&](int place) {
+    if (place < front.end) return place - front.begin;
+    return own + static_cast<int>(std::lower_bound(front.beyond.begin(), front.beyond.end(), place) - front.beyond.begin());
+  };
   for (int c = front.begin; c < front.end; ++c) {
     front.column(c - front.begin, c - front.begin) += shift;
     for (int k = first_[c]; k < first_[c + 1]; ++k) front.column(local(row_[k]), c - front.begin) += value_[k];
@@ -91,7 +128,11 @@ bool MultifrontalCholesky::eliminate(std::size_t which, double shift, std::vecto
   for (const int child : front.children) {
     MatrixXd& given = left_over[child];
     to.clear();
-    for (const int k : fronts_[child].beyond) to.push_back(local(k));
+    int next = 0;  // both lists ascend
+    for (const int k : fronts_[child].beyond) {
+      while (k >= front.end && front.beyond[next] != k) ++next;
+      to.push_back(k < front.end ? k - front.begin : own + next);
+    }
     for (int j = 0; j < given.cols(); ++j)
       for (int i = j; i < given.rows(); ++i)
         (to[j] < own ? front.column(to[i], to[j]) : rest(to[i] - own, to[j] - own)) += given(i, j);

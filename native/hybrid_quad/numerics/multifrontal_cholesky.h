@@ -9,8 +9,8 @@
 namespace hybrid_quad {
 
 /// A = L L^T for a symmetric positive definite matrix whose unknowns lie on a surface: multifrontal (Duff and Reid 1983)
-/// over a nested dissection, so that nearly all work is done by dense kernels. For n unknowns it stores about n log n
-/// numbers, and counts n^(3/2) operations, many to the nanosecond.
+/// over a nested dissection, so that nearly all work is done by dense kernels, and parts that do not touch are eliminated at
+/// the same time. For n unknowns it stores about n log n numbers, and counts n^(3/2) operations, many to the nanosecond.
 class MultifrontalCholesky {
  public:
   /// \param places  where the unknowns are, one for each; see nested_dissection
@@ -35,13 +35,15 @@ class MultifrontalCholesky {
 
   void find_couplings();
   void place_entries(const SparseMatrix& lower);
+  void plan_tasks();
   bool eliminate(std::size_t which, double shift, std::vector<Eigen::MatrixXd>& left_over);
 
   std::vector<int> place_;               ///< unknown to its place in the order of elimination
   std::vector<Front> fronts_;            ///< children before their parents
   std::vector<int> first_, row_, entry_; ///< the reordered lower triangle by columns; entries of the given one
   std::vector<double> value_;
-  std::vector<int> local_;
+  std::vector<int> task_end_;     ///< fronts of task t end here and begin where those of t - 1 end
+  std::vector<int> task_parent_;  ///< the task that waits for t, -1: none
 };
 
 }  // namespace hybrid_quad

@@ -1,7 +1,10 @@
 #include "hybrid_quad/numerics/nested_dissection.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
+
+#include "hybrid_quad/base/parallel.h"
 
 namespace hybrid_quad {
 
@@ -13,6 +16,7 @@ class Dissection {
  public:
   Dissection(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context)
       : places_(places), context_(context), first_(lower.rows() + 1, 0), set_(lower.rows(), 0) {
+    context_.on_progress = nullptr;
     visit_couplings(lower, [this](int i, int j) {
       ++first_[i + 1];
       ++first_[j + 1];
@@ -29,8 +33,9 @@ class Dissection {
   EliminationForest run() {
     std::vector<int> all(places_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-    dissect_pieces(std::move(all));
-    return std::move(forest_);
+    EliminationForest forest;
+    dissect_pieces(std::move(all), context_.threads, forest);
+    return forest;
   }
 
  private:
@@ -47,26 +52,39 @@ class Dissection {
 
   /// Gives the unknowns a mark of their own.
   int mark(const std::vector<int>& unknowns) {
-    ++marks_;
-    for (const int i : unknowns) set_[i] = marks_;
-    return marks_;
+    const int mark = ++marks_;
+    for (const int i : unknowns) set_[i] = mark;
+    return mark;
   }
 
-  int add_part(const std::vector<int>& own, std::vector<int> children) {
+  static int add_part(const std::vector<int>& own, std::vector<int> children, EliminationForest& forest) {
     EliminationForest::Part part;
-    part.begin = static_cast<int>(forest_.order.size());
-    forest_.order.insert(forest_.order.end(), own.begin(), own.end());
-    part.end = static_cast<int>(forest_.order.size());
+    part.begin = static_cast<int>(forest.order.size());
+    forest.order.insert(forest.order.end(), own.begin(), own.end());
+    part.end = static_cast<int>(forest.order.size());
     part.children = std::move(children);
-    forest_.parts.push_back(std::move(part));
-    return static_cast<int>(forest_.parts.size()) - 1;
+    forest.parts.push_back(std::move(part));
+    return static_cast<int>(forest.parts.size()) - 1;
+  }
+
+  /// Puts `added` behind what is in `forest`. \param tops  of `added`; get their numbers there
+  static void append(EliminationForest added, std::vector<int>& tops, EliminationForest& forest) {
+    const int parts = static_cast<int>(forest.parts.size()), unknowns = static_cast<int>(forest.order.size());
+    for (EliminationForest::Part& part : added.parts) {
+      part.begin += unknowns;
+      part.end += unknowns;
+      for (int& child : part.children) child += parts;
+      forest.parts.push_back(std::move(part));
+    }
+    forest.order.insert(forest.order.end(), added.order.begin(), added.order.end());
+    for (int& top : tops) top += parts;
   }
 
   /// \return the parts on top, one for every connected piece
-  std::vector<int> dissect_pieces(std::vector<int> unknowns) {
+  std::vector<int> dissect_pieces(std::vector<int> unknowns, int threads, EliminationForest& forest) {
     std::vector<int> tops;
     if (static_cast<int>(unknowns.size()) <= kLeaf) {
-      if (!unknowns.empty()) tops.push_back(add_part(unknowns, {}));
+      if (!unknowns.empty()) tops.push_back(add_part(unknowns, {}, forest));
       return tops;
     }
     const int within = mark(unknowns);
@@ -79,14 +97,15 @@ class Dissection {
       pieces.push_back(std::move(piece));
     }
     unknowns = {};
-    for (std::vector<int>& piece : pieces) tops.push_back(dissect_connected(std::move(piece)));
+    for (std::vector<int>& piece : pieces) tops.push_back(dissect_connected(std::move(piece), threads, forest));
     return tops;
   }
 
-  int dissect_connected(std::vector<int> piece) {
+  int dissect_connected(std::vector<int> piece, int threads, EliminationForest& forest) {
     constexpr std::size_t kLarge = 10000, kWideCut = 3;
-    if (static_cast<int>(piece.size()) <= kLeaf) return add_part(piece, {});
-    if (piece.size() > kLarge) context_.checkpoint();
+    if (static_cast<int>(piece.size()) <= kLeaf) return add_part(piece, {}, forest);
+    const bool is_large = piece.size() > kLarge;
+    if (is_large) context_.checkpoint();
     Separation parted = halved_by_plane(piece);
     // A disk of n unknowns is cut through by about the root of n.
     if (parted.cut.size() * parted.cut.size() > kWideCut * piece.size()) {
@@ -94,10 +113,21 @@ class Dissection {
       if (other.cut.size() < parted.cut.size()) parted = std::move(other);
     }
     piece = {};
-    std::vector<int> children = dissect_pieces(std::move(parted.low));
-    const std::vector<int> others = dissect_pieces(std::move(parted.high));
+    std::vector<int> children, others;
+    if (is_large && threads > 1) {
+      // The two sides share no coupling, so that neither looks at a mark of the other.
+      EliminationForest high;
+      parallel_for(2, 2, [&](int side) {
+        if (side == 0) children = dissect_pieces(std::move(parted.low), threads - threads / 2, forest);
+        else others = dissect_pieces(std::move(parted.high), threads / 2, high);
+      });
+      append(std::move(high), others, forest);
+    } else {
+      children = dissect_pieces(std::move(parted.low), 1, forest);
+      others = dissect_pieces(std::move(parted.high), 1, forest);
+    }
     children.insert(children.end(), others.begin(), others.end());
-    return add_part(parted.cut, std::move(children));
+    return add_part(parted.cut, std::move(children), forest);
   }
 
   Separation separated(std::vector<int> low, std::vector<int> high) {
@@ -159,11 +189,10 @@ class Dissection {
   }
 
   const std::vector<Vector3>& places_;
-  const RunContext& context_;
+  RunContext context_;  ///< reports nothing: several pieces at once have no common progress
   std::vector<int> first_, neighbour_;
   std::vector<int> set_;  ///< the latest mark that an unknown got
-  int marks_ = 0;
-  EliminationForest forest_;
+  std::atomic<int> marks_{0};
 };
 
 }  // namespace

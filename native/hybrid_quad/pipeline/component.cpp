@@ -87,8 +87,8 @@ class ComponentRemesher {
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
     require_sound("improve", violations_of(result_.mesh));
-    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_).size());
-    const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_);
+    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_, context_.threads).size());
+    const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_, context_.threads);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
     for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);

@@ -189,6 +189,21 @@ double least_agreement(const TriangleMesh& mesh, const SurfacePoint& point, cons
   return least;
 }
 
+/// The quads for which test(q) holds, ascending.
+template <class Test>
+std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test) {
+  constexpr int kChunk = 256;
+  const int count = static_cast<int>(mesh.quads.size());
+  std::vector<char> holds(count, 0);
+  parallel_for((count + kChunk - 1) / kChunk, threads, [&](int c) {
+    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q) holds[q] = test(q);
+  });
+  std::vector<int> found;
+  for (int q = 0; q < count; ++q)
+    if (holds[q]) found.push_back(q);
+  return found;
+}
+
 }  // namespace
 
 double scaled_jacobian(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
@@ -260,24 +275,19 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   return away > std::sqrt(near.squared_distance) + kReach * size;
 }
 
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
-  std::vector<int> inverted;
-  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
-    if (is_inverted(corners_of(mesh, q), surface, least_size)) inverted.push_back(q);
-  return inverted;
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size, int threads) {
+  return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, least_size); });
 }
 
-std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size) {
+std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size, int threads) {
   constexpr double kLeastArea = 1e-10;
   double sum = 0;
   for (const auto& v : mesh.quads)
     for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
   const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
-  std::vector<int> flawed;
-  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
-    if (!(quad_area_vector(mesh, q).norm() > kLeastArea * mean * mean) || is_inverted(corners_of(mesh, q), surface, least_size))
-      flawed.push_back(q);
-  return flawed;
+  return quads_that(mesh, threads, [&](int q) {
+    return !(quad_area_vector(mesh, q).norm() > kLeastArea * mean * mean) || is_inverted(corners_of(mesh, q), surface, least_size);
+  });
 }
 
 SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context, int samples) {

@@ -45,10 +45,10 @@ EdgeLoopSummary edge_loops_of(const QuadMesh& mesh);
 bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size = 0);
 
 /// All quads that are. Ascending.
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0);
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0, int threads = 1);
 
 /// Quads that are inverted, or without area (below 1e-10 of the squared mean edge length). Ascending.
-std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0);
+std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0, int threads = 1);
 
 /// Distances in percent of the diagonal of the input's bounding box.
 struct SurfaceDistance {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -21,8 +23,10 @@ class ThicknessProbe {
     double r = largest;
     for (int step = 0; step < kSteps; ++step) {
       const Vector3 centre = p - r * normal;
-      const SurfacePoint q = index_.nearest(centre);
-      if (q.face < 0 || std::sqrt(q.squared_distance) >= kTouches * r) break;
+      SurfaceIndex::Filter inside;
+      inside.within = kTouches * r;
+      const SurfacePoint q = index_.nearest(centre, inside);
+      if (q.face < 0) break;
       if (index_.mesh().normal(q.face).dot(normal) > kOpposite) return largest;
       const double height = normal.dot(p - q.position);
       if (height <= 0) return largest;
@@ -76,15 +80,18 @@ void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, doubl
   const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / probes));
   const double enough = 2 * length / kPi;  // a circle of this radius has room for four quads
   const ThicknessProbe probe(index, 0.9 * length);
-  for (int v = 0; v < mesh.vertex_count(); v += stride) {
-    if (v % 512 < stride) context.checkpoint();
-    if (mesh.outgoing(v) < 0) continue;
+  const auto limit_at = [&](int v) {
+    if (mesh.outgoing(v) < 0) return;
     const Vector3 normal = vertex_normal(mesh, v);
-    if (!(normal.squaredNorm() > 0.5)) continue;
+    if (!(normal.squaredNorm() > 0.5)) return;
     const double r = probe.radius(mesh.position(v), normal, enough);
-    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal, mesh.edge_vector(mesh.outgoing(v)))) continue;
+    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal, mesh.edge_vector(mesh.outgoing(v)))) return;
     target[v] = std::min(target[v], std::max(r * kPi / 2, least_ratio * length));
-  }
+  };
+  const int last = (mesh.vertex_count() - 1) / stride;
+  parallel_chunks(last + 1, context, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) limit_at(i * stride);
+  });
 }
 
 }  // namespace hybrid_quad

@@ -129,6 +129,7 @@ class SlipProblem {
     Eigen::VectorXd applied = lower_.selfadjointView<Eigen::Lower>() * x;
     Eigen::VectorXd residual = right_side_ - applied;
     const double goal = kResidual * right_side_.norm();
+    if (!(residual.norm() > goal)) return x;
     Eigen::VectorXd solved = factor_->solve(residual), direction = solved;
     double slope = residual.dot(solved);
     for (int step = 0; step < kMostSteps && residual.norm() > goal && slope > 0; ++step) {

@@ -13,13 +13,15 @@ constexpr double kCurveError = 0.02;     ///< over h: the same for feature curve
 constexpr double kThin = 0.01;           ///< over h: the normal of a face of less height says nothing
 constexpr double kNormalCosine = 0.7;    ///< a face may turn by 45 degrees when a vertex goes
 constexpr double kSameCosine = 0.97;    ///< normals that agree so well cannot hide that a surface leaves the input
+constexpr double kStill = 0.03;          ///< over h: vertices do not move by less
 constexpr double kPoorShape = 0.25;      ///< shape below which a collapse may not make a triangle worse
 
 /// 1 for an equilateral triangle, 0 for one without area.
-double shape(const Vector3& a, const Vector3& b, const Vector3& c) {
+double shape(const Vector3& a, const Vector3& b, const Vector3& c, double twice_area) {
   const double sides = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-  return sides > 0 ? 2 * std::sqrt(3.0) * (b - a).cross(c - a).norm() / sides : 0;
+  return sides > 0 ? 2 * std::sqrt(3.0) * twice_area / sides : 0;
 }
+double shape(const Vector3& a, const Vector3& b, const Vector3& c) { return shape(a, b, c, (b - a).cross(c - a).norm()); }
 
 double longest_side2(const Vector3& a, const Vector3& b, const Vector3& c) {
   return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -94,12 +96,6 @@ bool SurfaceRemesher::keeps_feature_distance(int h) const {
   return keeps;
 }
 
-Vector3 SurfaceRemesher::fan_normal(int v) const {
-  Vector3 n = Vector3::Zero();
-  mesh_.visit_outgoing(v, [&](int k) { n += mesh_.area_normal(k / 3); });
-  return n;
-}
-
 /// Whether the faces about from(h) stay where they are, and as good, when it goes to to(h). \param error what is lost
 bool SurfaceRemesher::keeps_shape(int h, double& error) const {
   const int a = mesh_.from(h), b = mesh_.to(h);
@@ -128,7 +124,7 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const double size_before = before.norm(), size_after = after.norm();
     const bool thin = !(size_before > kThin * target * std::sqrt(longest_side2(p, x, y)));
     const Vector3 reference = thin ? region_normal(mesh_.region(f)) : before;
-    const double new_shape = shape(q, x, y);
+    const double new_shape = shape(q, x, y, size_after);
     turns |= after.dot(reference) < kSameCosine * size_after * reference.norm();
     keeps = size_after > 0 && after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
             (new_shape >= kPoorShape || new_shape > kMore * worst_before) &&
@@ -204,13 +200,14 @@ double SurfaceRemesher::walked_distance2(int v, const Vector3& p) const {
   return index_.walk(p, hint).squared_distance;
 }
 
-SurfacePoint SurfaceRemesher::project(int v, const Vector3& p) const {
+/// \param normal  unit, of v's fan
+SurfacePoint SurfaceRemesher::project(int v, const Vector3& normal, const Vector3& p) const {
   const int region = mesh_.region(mesh_.outgoing(v) / 3);
   const double target = vertex_[v].target;
   SurfaceIndex::Filter filter;
   filter.region = region;
   filter.hint = vertex_[v].hint;
-  filter.normal = fan_normal(v).normalized();
+  filter.normal = normal;
   filter.min_cosine = 0.2;
   if (filter.hint >= 0 && input_region_[filter.hint] == region) {
     const SurfacePoint walked = index_.walk(p, filter.hint);
@@ -245,9 +242,9 @@ bool SurfaceRemesher::move_keeps_shape(int v, const Vector3& p) const {
     const Vector3 &x = mesh_.position(mesh_.to(k)), &y = mesh_.position(mesh_.apex(k));
     const Vector3 before = (x - old).cross(y - old), after = (x - p).cross(y - p);
     const double size_before = before.norm(), size_after = after.norm();
-    const double shape_before = shape(old, x, y);
+    const double shape_before = shape(old, x, y, size_before);
     worst_before = std::min(worst_before, shape_before);
-    worst_after = std::min(worst_after, shape(p, x, y));
+    worst_after = std::min(worst_after, shape(p, x, y, size_after));
     keeps = keeps && size_after > 0 && (shape_before < 0.02 || after.dot(before) >= 0.7 * size_before * size_after);
   });
   return keeps && worst_after > std::min(0.5, worst_before * 0.999);
@@ -255,21 +252,24 @@ bool SurfaceRemesher::move_keeps_shape(int v, const Vector3& p) const {
 
 /// Moves v towards the middle of its faces, within the surface.
 void SurfaceRemesher::relax_vertex(int v) {
-  Vector3 sum = Vector3::Zero();
+  Vector3 sum = Vector3::Zero(), n = Vector3::Zero();
   double weight = 0;
   const Vector3 p = mesh_.position(v);
   mesh_.visit_outgoing(v, [&](int k) {
-    const double area = mesh_.area_normal(k / 3).norm();
+    const Vector3 area_normal = mesh_.area_normal(k / 3);
+    const double area = area_normal.norm();
     sum += area / 3 * (p + mesh_.position(mesh_.to(k)) + mesh_.position(mesh_.apex(k)));
     weight += area;
+    n += area_normal;
   });
-  const Vector3 n = fan_normal(v);
   const double length2 = n.squaredNorm();
   if (!(weight > 0) || !(length2 > 0)) return;
   Vector3 step = sum / weight - p;
   step -= n * (n.dot(step) / length2);
+  if (step.squaredNorm() < std::pow(kStill * vertex_[v].target, 2)) return;
+  const Vector3 normal = n.normalized();
   for (const double part : {1.0, 0.5, 0.25}) {
-    const SurfacePoint q = project(v, p + part * step);
+    const SurfacePoint q = project(v, normal, p + part * step);
     if (q.face < 0) return;
     if (q.squared_distance > std::pow(0.3 * vertex_[v].target, 2) || !move_keeps_shape(v, q.position) ||
         !move_keeps_surface(v, q))

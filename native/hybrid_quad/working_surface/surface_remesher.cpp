@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+
+#include "hybrid_quad/base/parallel.h"
 
 namespace hybrid_quad {
 
@@ -48,6 +51,7 @@ void SurfaceRemesher::run() {
   split_feature_edges();
   for (int round = 0; round < kRounds; ++round) {
     split_long_edges(kLong);
+    if (round == 0) renumber();
     flip_edges();
     collapse_short_edges(kShort);
     flip_edges();
@@ -71,7 +75,18 @@ void SurfaceRemesher::run() {
   split_edges_between_features();
   flip_edges();
   relax();
+  renumber();
   context_.checkpoint(0.95);
+}
+
+/// Splitting puts what is near on the surface far apart in memory, where every stage then waits for it.
+void SurfaceRemesher::renumber() {
+  EditableMesh::Compacted compacted = mesh_.compacted_by_neighbourhood();
+  std::vector<VertexData> vertex;
+  vertex.reserve(compacted.vertex_slot.size());
+  for (const int slot : compacted.vertex_slot) vertex.push_back(vertex_[slot]);
+  vertex_ = std::move(vertex);
+  mesh_ = EditableMesh(compacted.mesh, std::move(compacted.halfedge_curve), std::move(compacted.face_region));
 }
 
 void SurfaceRemesher::collapse_short_edges(double longest) {
@@ -167,12 +182,37 @@ void SurfaceRemesher::flip_edges() {
   }
 }
 
+/// One colour after the other: vertices of a colour have no face in common, so that each moves as if alone.
 void SurfaceRemesher::relax() {
+  for (const std::vector<int>& vertices : free_vertices_by_colour())
+    parallel_chunks(static_cast<int>(vertices.size()), context_, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) relax_vertex(vertices[i]);
+    });
+}
+
+/// The vertices off features in groups without neighbours: each gets the first colour that no neighbour has.
+std::vector<std::vector<int>> SurfaceRemesher::free_vertices_by_colour() const {
+  constexpr unsigned kMostColours = 64;
+  std::vector<std::vector<int>> groups;
+  std::vector<signed char> colour(mesh_.vertex_slots(), -1);
   for (int v = 0; v < mesh_.vertex_slots(); ++v) {
     if (!mesh_.is_vertex(v) || vertex_[v].on_feature) continue;
-    checkpoint();
-    relax_vertex(v);
+    std::uint64_t taken = 0;
+    const auto take = [&](int w) {
+      if (colour[w] >= 0) taken |= std::uint64_t{1} << colour[w];
+    };
+    mesh_.visit_outgoing(v, [&](int h) {
+      take(mesh_.to(h));
+      take(mesh_.apex(h));
+    });
+    unsigned c = 0;
+    while (c < kMostColours && (taken >> c & 1)) ++c;
+    if (c == kMostColours) continue;  // a vertex with so many neighbours may stay where it is
+    colour[v] = static_cast<signed char>(c);
+    if (c == groups.size()) groups.emplace_back();
+    groups[c].push_back(v);
   }
+  return groups;
 }
 
 }  // namespace hybrid_quad

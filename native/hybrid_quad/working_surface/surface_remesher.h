@@ -46,6 +46,8 @@ class SurfaceRemesher {
   void split_edges_between_features();
   void flip_edges();
   void relax();
+  void renumber();
+  std::vector<std::vector<int>> free_vertices_by_colour() const;
 
   // One operation.
   int split(int h, double at);
@@ -59,8 +61,7 @@ class SurfaceRemesher {
   bool move_keeps_shape(int v, const Vector3& p) const;
   bool move_keeps_surface(int v, const SurfacePoint& q) const;
   double walked_distance2(int v, const Vector3& p) const;
-  SurfacePoint project(int v, const Vector3& p) const;
-  Vector3 fan_normal(int v) const;
+  SurfacePoint project(int v, const Vector3& normal, const Vector3& p) const;
 
   const RunContext& context_;
   WorkingSurfaceOptions options_;
