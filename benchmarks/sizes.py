@@ -183,24 +183,29 @@ def _count_cell(outcome: Outcome) -> str:
 def count_rows(paths: list[Path], counts: list[int], out: Path, seconds: float) -> list[str]:
     """One row for each model, and the share of valid results within the tolerance for each count and setting.
 
-    A minus says that features by angle gave way, an exclamation mark that the mesh is invalid or has flawed quads.
+    A minus says that features by angle gave way, an exclamation mark that the mesh is invalid or has flawed quads. Numbers
+    that no mesh of quads can have (the report's fewest_quads is beyond the tolerance) are in brackets, and left out of the
+    share.
     """
     columns = [(count, setting) for count in counts for setting in ("sharp", "no_sharp")]
     good, longest = dict.fromkeys(columns, 0), dict.fromkeys(columns, 0.0)
+    possible = dict.fromkeys(columns, len(paths))
     rows = []
     for path in paths:
         cells = []
         for count, setting in columns:
             run = Run(path.stem, path, count, setting)
             outcome = run_and_judge(run, out, Limits(seconds=seconds), judge=None, keep_meshes=False)
-            cells.append(_count_cell(outcome))
+            tolerance = FEW_TOLERANCE if count < FEW else TOLERANCE
+            is_impossible = not outcome.failed and outcome.report["fewest_quads"] > (1 + tolerance) * count
+            possible[count, setting] -= is_impossible
+            cells.append(f"({_count_cell(outcome)})" if is_impossible else _count_cell(outcome))
             longest[count, setting] = max(longest[count, setting], outcome.cpu_seconds)
             is_sound = outcome.status == "valid" and not outcome.report["flawed_quads"]
-            tolerance = FEW_TOLERANCE if count < FEW else TOLERANCE
             good[count, setting] += is_sound and abs(outcome.report["quads"] - count) <= tolerance * count
         rows.append(f"| {path.stem} | " + " | ".join(cells) + " |")
         print(rows[-1], file=sys.stderr, flush=True)
-    shares = [f"{good[column]} of {len(paths)}" for column in columns]
+    shares = [f"{good[column]} of {possible[column]}" for column in columns]
     times = [f"{longest[column]:.0f} s" for column in columns]
     names = [f"{count} {'40°' if setting == 'sharp' else 'none'}" for count, setting in columns]
     return [

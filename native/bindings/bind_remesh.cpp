@@ -103,6 +103,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["added_rings"] = repairs.added_rings;
   result["split_polychords"] = repairs.split_polychords;
   result["fitted_rows"] = repairs.fitted_rows;
+  result["fitted_quads"] = repairs.fitted_quads;
   result["opened_straight_quads"] = repairs.opened_straight_quads;
   result["mended_places"] = repairs.mended_places;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
@@ -173,6 +174,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["working_faces"] = report.working_faces;
   result["components"] = report.components;
   result["quads"] = report.quads;
+  result["fewest_quads"] = report.fewest_quads;
   result["vertices"] = report.vertices;
   result["irregular_vertices"] = report.irregular_vertices;
   result["field_singularities"] = report.field_singularities;

@@ -5,6 +5,7 @@
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/mend.h"
+#include "hybrid_quad/improve/quad_number.h"
 #include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/smoother.h"
@@ -37,28 +38,42 @@ int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& co
   return moves;
 }
 
-/// One round of everything; quads in `locked` stay as they are.
-ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, const TriangleMesh& input,
-                           const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
-                           const ImproveOptions& options, const RunContext& context) {
-  ImproveReport report;
-  constexpr double kCurvatureWeight = 20;
-  constexpr int kSweepsAfter = 6, kLastRounds = 3;
+Workpiece workpiece_of(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
+                       const SurfaceIndex& index, const ImproveOptions& options) {
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
-  if (!(piece.h > 0)) return report;
-  for (int q = 0; q < piece.mesh.quad_count(); ++q)
-    if (locked[q]) piece.mesh.lock(q);
-  report.inverted_before = static_cast<int>(tangled_quads(piece, context.threads).size());
+  return piece;
+}
+
+void bind(Workpiece& piece) {
+  constexpr double kCurvatureWeight = 20;
   piece.bind_all();
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
+}
+
+SmootherOptions smoothing_of(const ImproveOptions& options, int threads) {
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
   smoothing.aspect_power = options.aspect_power;
   smoothing.guides = options.guides;
   smoothing.rings = options.rings;
-  smoothing.threads = context.threads;
-  Smoother smoother(piece, smoothing);
+  smoothing.threads = threads;
+  return smoothing;
+}
+
+/// One round of everything; quads in `locked` stay as they are.
+ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, const TriangleMesh& input,
+                           const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
+                           const ImproveOptions& options, const RunContext& context) {
+  ImproveReport report;
+  constexpr int kSweepsAfter = 6, kLastRounds = 3;
+  Workpiece piece = workpiece_of(quads, input, features, index, options);
+  if (!(piece.h > 0)) return report;
+  for (int q = 0; q < piece.mesh.quad_count(); ++q)
+    if (locked[q]) piece.mesh.lock(q);
+  report.inverted_before = static_cast<int>(tangled_quads(piece, context.threads).size());
+  bind(piece);
+  Smoother smoother(piece, smoothing_of(options, context.threads));
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
   else
@@ -81,6 +96,26 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.usual_size, context);
   quads = piece.mesh.extract();
   return report;
+}
+
+int flawed_in(const EditMesh& mesh, const FlawMeasure& measure) {
+  int flawed = 0;
+  for (int q = 0; q < mesh.quad_count(); ++q) flawed += mesh.alive(q) && measure.is_flawed(q);
+  return flawed;
+}
+
+/// Smooths everything, unless that brings flaws.
+void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, int sweeps, const RunContext& context) {
+  const int before = flawed_in(piece.mesh, measure);
+  const std::vector<Vector3> positions = piece.mesh.positions;
+  const std::vector<int> faces = piece.face;
+  const std::vector<double> arcs = piece.arc;
+  smoother.smooth(sweeps, context);
+  if (flawed_in(piece.mesh, measure) <= before) return;
+  piece.mesh.positions = positions;
+  piece.face = faces;
+  piece.arc = arcs;
+  smoother.update_frames(true);
 }
 
 double area_of(const QuadMesh& m) {
@@ -125,6 +160,32 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   }
   quads = std::move(best);
   return report;
+}
+
+int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options, const QuadNumber& number, const RunContext& context,
+                       const SurfaceIndex* whole) {
+  constexpr double kMostInOneGo = 0.25;  // of the quads: in between all are smoothed
+  constexpr int kSweeps = 5;
+  Workpiece piece = workpiece_of(quads, input, features, index, options);
+  if (!(piece.h > 0)) return 0;
+  bind(piece);
+  Smoother smoother(piece, smoothing_of(options, context.threads));
+  smoother.update_frames(true);
+  const FlawMeasure measure(piece, whole ? *whole : index, options.usual_size);
+  const int before = live_quads(piece.mesh);
+  for (int now = before, last = -1; now != number.wanted && now != last;) {
+    last = now;
+    const int step = std::max(1, static_cast<int>(kMostInOneGo * now));
+    const QuadNumber next{std::clamp(number.wanted, now - step, now + step), number.lengths};
+    take_out_quads(piece, smoother, measure, next, context);
+    put_in_quads(piece, smoother, measure, next, context);
+    now = live_quads(piece.mesh);
+    smooth_without_flaws(piece, smoother, measure, kSweeps, context);
+  }
+  mend_flawed(piece, smoother, measure.surface(), options.usual_size, context);
+  quads = piece.mesh.extract();
+  return static_cast<int>(quads.quads.size()) - before;
 }
 
 }  // namespace hybrid_quad

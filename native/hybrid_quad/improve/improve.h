@@ -57,6 +57,21 @@ struct LimitFitReport {
 LimitFitReport fit_limit_surface(QuadMesh& quads, const SurfaceIndex& surface, const std::vector<SegmentIndex>& curves,
                                  const RunContext& context);
 
+/// Which number of quads to bring a mesh to, one quad at a time.
+struct QuadNumber {
+  int wanted = 0;
+  /// #V of the input: edge lengths asked for. Quads that are small against them are taken out, those that are large are split.
+  const std::vector<double>& lengths;
+};
+
+/// Takes single quads out, or puts some in, until there are as many as wanted or no more can be without new flaws. Features, the
+/// boundary and the topology stay. Improving afterwards is left to the caller.
+/// \pre the quads are improved  \param whole  as for improve_quads
+/// \returns quads put in, less those taken out
+int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options, const QuadNumber& number, const RunContext& context,
+                       const SurfaceIndex* whole = nullptr);
+
 /// The last resort against quads without area (below 1e-10 of the squared mean edge length): a vertex or two of each move by a
 /// ten thousandth of the mean edge so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1). \returns number of quads opened

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "hybrid_quad/improve/flaw_measure.h"
 #include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/sequence_search.h"
 #include "hybrid_quad/improve/trial.h"
-#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -15,14 +15,9 @@ namespace {
 class Mender {
  public:
   Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double least_size)
-      : piece_(piece), smoother_(smoother), whole_(whole), least_size_(least_size), search_(piece.mesh, kEffort) {}
+      : piece_(piece), smoother_(smoother), measure_(piece, whole, least_size), search_(piece.mesh, kEffort) {}
 
-  bool is_flawed(int q) const {
-    constexpr double kLeastArea = 1e-9;
-    const std::array<Vector3, 4> p = corners(q);
-    const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, least_size_);
-  }
+  bool is_flawed(int q) const { return measure_.is_flawed(q); }
 
   /// \returns whether fewer quads around q are flawed now
   bool mend(int q) {
@@ -37,26 +32,6 @@ class Mender {
   static constexpr int kEffort = 100;
   static constexpr double kFewer = 0.5;
   static constexpr SearchLimits kLikely{1, 30, -30, 400, 1, 40}, kFar{2, 30, -30, 4000, 12, 120};
-
-  std::array<Vector3, 4> corners(int q) const {
-    const auto& v = piece_.mesh.quad(q);
-    const auto& p = piece_.mesh.positions;
-    return {p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
-  }
-
-  /// Counts the flawed ones; what is only badly shaped makes a difference below one.
-  Trial::Measure measure() const {
-    return [this](const std::vector<int>& quads) {
-      constexpr double kFair = 0.2;
-      double flawed = 0, bad = 0;
-      for (const int q : quads) {
-        flawed += is_flawed(q);
-        const std::array<Vector3, 4> p = corners(q);
-        bad += std::max(0.0, kFair - scaled_jacobian(p[0], p[1], p[2], p[3]));
-      }
-      return -flawed - 0.4 * bad / (1 + bad);
-    };
-  }
 
   bool keep(Trial& trial) {
     search_.count_trial();
@@ -75,7 +50,7 @@ class Mender {
       std::sort(inside.begin(), inside.end());
       inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     }
-    Trial trial(piece_, smoother_, inside, measure());
+    Trial trial(piece_, smoother_, inside, measure_);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (const int v : inside)
         if (piece_.mesh.is_free(v) && !piece_.mesh.is_pinned(v)) {
@@ -89,7 +64,7 @@ class Mender {
     const EditMesh::Quad around = piece_.mesh.quad(q);
     for (const int v : around) {
       search_.count_trial();
-      if (requadrangulate_around(piece_, smoother_, v, measure(), kFewer)) return true;
+      if (requadrangulate_around(piece_, smoother_, v, measure_, kFewer)) return true;
     }
     return false;
   }
@@ -107,7 +82,7 @@ class Mender {
     const EditMesh::Quad seeds = piece_.mesh.quad(q);
     const std::vector<Sequence> sequences = search_.run({seeds.begin(), seeds.end()}, limits);
     for (const Sequence& sequence : sequences) {
-      Trial trial(piece_, smoother_, touched_by(piece_, sequence), measure());
+      Trial trial(piece_, smoother_, touched_by(piece_, sequence), measure_);
       make_sequence(piece_, sequence);
       if (keep(trial)) return true;
     }
@@ -116,8 +91,7 @@ class Mender {
 
   Workpiece& piece_;
   Smoother& smoother_;
-  const SurfaceIndex& whole_;
-  double least_size_;
+  FlawMeasure measure_;
   SequenceSearch search_;
 };
 

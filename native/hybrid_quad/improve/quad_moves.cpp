@@ -1,5 +1,6 @@
 #include "hybrid_quad/improve/quad_moves.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -25,14 +26,50 @@ int sector_size(const EditMesh& mesh, int v, int start) {
   return count;
 }
 
+bool is_removable(const EditMesh& mesh, int v) {
+  return mesh.is_free(v) && !mesh.on_boundary(v) && mesh.feature_links(v).empty();
+}
+
 bool neighbours(const EditMesh& mesh, int v, int w) { return v == w || mesh.has_edge(v, w); }
+
+/// Of a vertex v with three quads that is to go with the diagonal beside it: the end of its third edge.
+int third_end(const EditMesh& mesh, const EditMesh::Quad& corners, int v) {
+  for (const int q : mesh.quads_at(v)) {
+    const int w = mesh.quad(q)[(mesh.corner_of(q, v) + 1) & 3];
+    if (std::find(corners.begin(), corners.end(), w) == corners.end()) return w;
+  }
+  return -1;
+}
+
+bool may_merge(const EditMesh& mesh, const EditMesh::Quad& corners, const std::vector<int>& away, int kept, int gone,
+               Changed* changed) {
+  if (away.empty()) return false;
+  const int merged = static_cast<int>(away.size());
+  if (mesh.valence(kept) + mesh.valence(gone) - 2 - merged < mesh.least_valence(kept)) return false;
+  std::array<int, 2> ends{-1, -1};
+  for (int i = 0; i < merged; ++i) {
+    const int end = ends[i] = third_end(mesh, corners, away[i]);
+    // Both quads that become one lie between the end and the diagonal: they must have other corners besides.
+    std::vector<int> others;
+    for (const int q : mesh.quads_at(away[i])) others.push_back(mesh.quad(q)[(mesh.corner_of(q, away[i]) + 2) & 3]);
+    std::sort(others.begin(), others.end());
+    if (end < 0 || std::adjacent_find(others.begin(), others.end()) != others.end()) return false;
+    const int lost = i == 1 && ends[0] == end ? 2 : 1;
+    if (mesh.valence(end) - lost < mesh.least_valence(end)) return false;
+    changed->vertex[4 + i] = lost == 2 ? -1 : end;
+  }
+  return true;
+}
 
 bool may_collapse(const EditMesh& mesh, const Move& move, Changed* changed) {
   int kept, gone;
   if (!collapse_ends(mesh, move, &kept, &gone) || mesh.is_pinned(gone)) return false;
   const auto& corners = mesh.quad(move.quad);
   const int a = corners[(move.corner + 1) & 3], b = corners[(move.corner + 3) & 3];
-  if (mesh.valence(a) <= mesh.least_valence(a) || mesh.valence(b) <= mesh.least_valence(b)) return false;
+  const std::vector<int> away = merged_away(mesh, move);
+  for (const int v : {a, b})
+    if (mesh.valence(v) <= mesh.least_valence(v) && std::find(away.begin(), away.end(), v) == away.end()) return false;
+  if (move.kind == Move::kCollapseAndMerge && !may_merge(mesh, corners, away, kept, gone, changed)) return false;
   if (mesh.is_free(kept) && mesh.anchor(kept) != mesh.anchor(gone)) return false;
   for (const int q : mesh.quads_at(gone)) {
     if (q != move.quad && mesh.corner_of(q, kept) >= 0) return false;
@@ -40,13 +77,23 @@ bool may_collapse(const EditMesh& mesh, const Move& move, Changed* changed) {
     for (const int w : {mesh.quad(q)[(i + 1) & 3], mesh.quad(q)[(i + 3) & 3]})
       if (w != a && w != b && neighbours(mesh, w, kept)) return false;
   }
-  changed->vertex = {kept, gone, a, b};
+  std::copy_n(std::array<int, 4>{kept, gone, a, b}.begin(), 4, changed->vertex.begin());
   return true;
+}
+
+/// The two quads at v become one.
+void merge_quads_at(EditMesh& mesh, int v) {
+  const std::vector<int> both = mesh.quads_at(v);
+  EditMesh::Quad corners = mesh.quad(both[0]);
+  corners[mesh.corner_of(both[0], v)] = mesh.quad(both[1])[(mesh.corner_of(both[1], v) + 2) & 3];
+  mesh.set_quad(both[1], mesh.quad(both[1]), false);
+  mesh.set_quad(both[0], corners, true);
 }
 
 void collapse(EditMesh& mesh, const Move& move) {
   int kept, gone;
   collapse_ends(mesh, move, &kept, &gone);
+  const std::vector<int> away = merged_away(mesh, move);
   const std::vector<int> around = mesh.quads_at(gone);
   mesh.set_quad(move.quad, mesh.quad(move.quad), false);
   for (const int q : around) {
@@ -55,6 +102,7 @@ void collapse(EditMesh& mesh, const Move& move) {
     corners[mesh.corner_of(q, gone)] = kept;
     mesh.set_quad(q, corners, true);
   }
+  for (const int v : away) merge_quads_at(mesh, v);
 }
 
 bool may_rotate(const EditMesh& mesh, const Move& move, Changed* changed) {
@@ -68,7 +116,7 @@ bool may_rotate(const EditMesh& mesh, const Move& move, Changed* changed) {
   const int from = move.kind == Move::kRotateBack ? hexagon.a : hexagon.x;
   const int to = move.kind == Move::kRotateBack ? hexagon.y : hexagon.d;
   if (neighbours(mesh, from, to)) return false;
-  changed->vertex = {b, c, from, to};
+  changed->vertex = {b, c, from, to, -1, -1};
   return true;
 }
 
@@ -116,9 +164,18 @@ bool collapse_ends(const EditMesh& mesh, const Move& move, int* kept, int* gone)
   const auto& q = mesh.quad(move.quad);
   *kept = q[move.corner];
   *gone = q[(move.corner + 2) & 3];
-  const auto removable = [&](int v) { return mesh.is_free(v) && !mesh.on_boundary(v) && mesh.feature_links(v).empty(); };
-  if (!removable(*gone)) std::swap(*kept, *gone);
-  return removable(*gone);
+  if (!is_removable(mesh, *gone)) std::swap(*kept, *gone);
+  return is_removable(mesh, *gone);
+}
+
+std::vector<int> merged_away(const EditMesh& mesh, const Move& move) {
+  std::vector<int> away;
+  if (move.kind != Move::kCollapseAndMerge) return away;
+  for (const int side : {1, 3}) {
+    const int v = mesh.quad(move.quad)[(move.corner + side) & 3];
+    if (is_removable(mesh, v) && !mesh.is_pinned(v) && mesh.valence(v) == mesh.least_valence(v)) away.push_back(v);
+  }
+  return away;
 }
 
 bool hexagon_of(const EditMesh& mesh, const Move& move, Hexagon* hexagon) {
@@ -134,11 +191,11 @@ bool hexagon_of(const EditMesh& mesh, const Move& move, Hexagon* hexagon) {
 
 bool may_move(const EditMesh& mesh, const Move& move, Changed* changed) {
   if (!mesh.alive(move.quad)) return false;
-  return move.kind == Move::kCollapse ? may_collapse(mesh, move, changed) : may_rotate(mesh, move, changed);
+  return move.collapses() ? may_collapse(mesh, move, changed) : may_rotate(mesh, move, changed);
 }
 
 void make_move(EditMesh& mesh, const Move& move) {
-  if (move.kind == Move::kCollapse)
+  if (move.collapses())
     collapse(mesh, move);
   else
     rotate(mesh, move);

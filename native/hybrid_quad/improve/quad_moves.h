@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "hybrid_quad/improve/edit_mesh.h"
 
@@ -14,20 +15,22 @@ double valence_cost(const EditMesh& mesh, int v);
 bool has_straight_corner(const EditMesh& mesh, int v);
 
 /// The two moves of which all others are made: a quad shrinks to one of its diagonals' middle, or the edge between two
-/// quads turns in their hexagon.
+/// quads turns in their hexagon. And a shrinking that leaves a vertex beside the diagonal only two quads: they become one.
 struct Move {
-  enum Kind : char { kCollapse, kRotateBack, kRotateForth };
+  enum Kind : char { kCollapse, kRotateBack, kRotateForth, kCollapseAndMerge };
   Kind kind;
   int quad;
   int corner;  ///< collapse: a corner of the diagonal; rotation: the side
+  bool collapses() const { return kind == kCollapse || kind == kCollapseAndMerge; }
 };
 
 /// Vertices whose valence a move changed.
 struct Changed {
-  std::array<int, 4> vertex{-1, -1, -1, -1};
+  std::array<int, 6> vertex{-1, -1, -1, -1, -1, -1};
   double cost(const EditMesh& mesh) const {
     double sum = 0;
-    for (const int v : vertex) sum += valence_cost(mesh, v);
+    for (const int v : vertex)
+      if (v >= 0) sum += valence_cost(mesh, v);
     return sum;
   }
 };
@@ -42,6 +45,8 @@ struct Hexagon {
 bool collapse_ends(const EditMesh& mesh, const Move& move, int* kept, int* gone);
 /// \returns false where the move's edge is on the boundary
 bool hexagon_of(const EditMesh& mesh, const Move& move, Hexagon* hexagon);
+/// Vertices beside the diagonal that go too, as the two quads that they are left with become one; kCollapseAndMerge only.
+std::vector<int> merged_away(const EditMesh& mesh, const Move& move);
 /// Whether the mesh stays valid: no double edges, no vertex below its least valence, features and boundary untouched.
 bool may_move(const EditMesh& mesh, const Move& move, Changed* changed);
 /// \pre may_move

@@ -49,7 +49,7 @@ void SequenceSearch::extend(const std::vector<int>& seeds, const Sequence& so_fa
     make_move(mesh_, candidate.sequence.moves[candidate.sequence.length - 1]);
     std::vector<int> costly;
     for (const int v : candidate.changed.vertex)
-      if (mesh_.valence(v) > 0 && valence_cost(mesh_, v) > 0.5) costly.push_back(v);
+      if (v >= 0 && mesh_.valence(v) > 0 && valence_cost(mesh_, v) > 0.5) costly.push_back(v);
     if (!costly.empty()) extend(costly, candidate.sequence);
     mesh_.undo_to(mark);
   }
@@ -83,7 +83,7 @@ void make_sequence(Workpiece& piece, const Sequence& sequence) {
   for (int i = 0; i < sequence.length; ++i) {
     const Move& move = sequence.moves[i];
     int kept, gone;
-    if (move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone) &&
+    if (move.collapses() && collapse_ends(piece.mesh, move, &kept, &gone) &&
         piece.mesh.is_free(kept) && !piece.mesh.is_pinned(kept) && piece.face[kept] >= 0) {
       const Vector3 middle = 0.5 * (piece.mesh.positions[kept] + piece.mesh.positions[gone]);
       const SurfacePoint point = piece.walk(middle, piece.face[kept]);
@@ -103,10 +103,11 @@ std::vector<int> touched_by(Workpiece& piece, const Sequence& sequence) {
     int kept, gone;
     Hexagon hexagon;
     std::vector<int> quads;
-    if (move.kind == Move::kCollapse && collapse_ends(piece.mesh, move, &kept, &gone))
+    if (move.collapses() && collapse_ends(piece.mesh, move, &kept, &gone))
       quads = piece.mesh.quads_at(gone);
-    else if (move.kind != Move::kCollapse && hexagon_of(piece.mesh, move, &hexagon))
+    else if (!move.collapses() && hexagon_of(piece.mesh, move, &hexagon))
       quads = {move.quad, hexagon.other};
+    for (const int v : merged_away(piece.mesh, move)) quads.insert(quads.end(), piece.mesh.quads_at(v).begin(), piece.mesh.quads_at(v).end());
     for (const int q : quads) vertices.insert(vertices.end(), piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
   };
   for (int i = 0; i < sequence.length; ++i) {

@@ -40,6 +40,21 @@ QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<s
   return complex;
 }
 
+QuadComplex complex_of(const QuadMesh& mesh) {
+  QuadComplex complex = complex_of_quads(mesh.positions, mesh.quads);
+  complex.kind = mesh.kind;
+  complex.anchor = mesh.anchor;
+  std::vector<std::pair<std::array<int, 2>, int>> curve_of;
+  for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) curve_of.push_back({{std::min(e.a, e.b), std::max(e.a, e.b)}, e.curve});
+  std::sort(curve_of.begin(), curve_of.end());
+  for (int d = 0; d < static_cast<int>(complex.opposite.size()); ++d) {
+    const std::array<int, 2> ends{std::min(complex.from(d), complex.to(d)), std::max(complex.from(d), complex.to(d))};
+    const auto at = std::lower_bound(curve_of.begin(), curve_of.end(), std::make_pair(ends, -1));
+    if (at != curve_of.end() && at->first == ends) complex.curve[d] = at->second;
+  }
+  return complex;
+}
+
 std::vector<int> vertex_orbits(const std::vector<int>& opposite) {
   std::vector<int> orbit(opposite.size(), -1);
   int count = 0;

@@ -32,6 +32,9 @@ struct QuadComplex {
 /// quads
 QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<std::array<int, 4>>& quads);
 
+/// The complex of a mesh, with its curves and what vertices are bound to: to_quad_mesh() gives the mesh again.
+QuadComplex complex_of(const QuadMesh& mesh);
+
 /// The vertices of a gluing: for each dart the number of its origin, numbered 0.. in the order of their first
 /// darts.
 std::vector<int> vertex_orbits(const std::vector<int>& opposite);

@@ -11,7 +11,10 @@
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/extraction.h"
+#include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/finishing.h"
 #include "hybrid_quad/pipeline/guide_curves_in_quads.h"
+#include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
@@ -31,6 +34,7 @@ struct Settings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
   bool as_needed = false;  ///< nothing gives way for the number of quads
+  bool is_rough = false;   ///< the number is met afterwards, quad by quad
 };
 constexpr Settings kSettings[] = {{},
                                   {1.03, 1e-4, false},
@@ -49,10 +53,6 @@ constexpr int kManyFlaws = 12;
 constexpr double kMostWork = 12;
 constexpr double kShorterWhereFlawed = 0.6;
 constexpr double kShareOfTolerance = 0.6;  ///< that rows of quads are fitted to: improvement takes its own
-// Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
-// ones hardly any.
-constexpr double kLeastSize = 0.009, kDoubtfulSize = 0.018;
-
 /// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
 double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
 
@@ -70,25 +70,23 @@ class ComponentRemesher {
       : plan_(plan),
         mesh_(plan.mesh),
         whole_(whole),
-        doubtful_size_(kDoubtfulSize * std::sqrt(whole.mesh().total_area())),
-        least_size_(kLeastSize * std::sqrt(whole.mesh().total_area())),
         wishes_(wishes),
         guides_(guides),
         options_(options),
+        finishing_(plan, whole, wishes, options),
         settings_(settings),
         clock_(clock),
         context_(context) {}
 
   ComponentResult run() {
     result_.area = mesh_.total_area();
-    length_ = std::sqrt(result_.area / plan_.quads);
     prepare();
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
     require_sound("improve", violations_of(result_.mesh));
-    result_.flawed_quads = static_cast<int>(flawed_quads(result_.mesh, whole_, least_size_, context_.threads).size());
-    const std::vector<int> doubtful = flawed_quads(result_.mesh, whole_, doubtful_size_, context_.threads);
+    result_.flawed_quads = static_cast<int>(finishing_.flawed(result_.mesh, context_.threads).size());
+    const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
     for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);
@@ -166,9 +164,10 @@ class ComponentRemesher {
 
   /// Passes with as many quads as it takes are there for flawed quads: there the count matters less.
   ExtractionChoice choice_of_tries(int tries) const {
-    constexpr double kNearAsNeeded = 0.15, kLastResort = 2;
-    if (!settings_.as_needed) return ExtractionChoice(plan_.quads, count_tolerance(), 2);
-    return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries);
+    constexpr double kNearAsNeeded = 0.15, kLastResort = 2, kFar = 0.15, kRough = 0.5;
+    if (settings_.is_rough) return ExtractionChoice(plan_.quads, kRough, 1, kRough);
+    if (!settings_.as_needed) return ExtractionChoice(plan_.quads, count_tolerance(), 2, kFar);
+    return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries, kFar);
   }
 
   /// Rows that counted curves call for are not paid for by ever larger quads everywhere else.
@@ -186,8 +185,8 @@ class ComponentRemesher {
   }
 
   void finish(Extraction& extraction) {
-    if (options_.improve) improve(*plan_.index, extraction);
-    make_mirrorable(*plan_.index, extraction.mesh);
+    if (options_.improve) improve(extraction);
+    finishing_.make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
     extraction.missed = missed_counts(plan_.features, extraction.mesh);
     settle_hard_guides(extraction);
   }
@@ -307,40 +306,21 @@ class ComponentRemesher {
     return {centre, kShorterWhereFlawed * length};
   }
 
-  void improve(const SurfaceIndex& index, Extraction& extraction) {
+  void improve(Extraction& extraction) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
-    clock_.measure("improve", [&] {
-      ImproveOptions o = improve_options();
-      const GuideMap guides = guides_on(wishes_, mesh_);
-      o.guides = &guides;
-      const ImproveReport report = improve_quads(extraction.mesh, mesh_, plan_.features, index, o, context, &whole_);
-      extraction.repairs.mended_places += report.mended;
-      extraction.repairs.restored_quads += report.restored_quads;
-      extraction.flawed = report.flawed_after;
-    });
+    const ImproveReport report = clock_.measure("improve", [&] { return finishing_.improve(extraction.mesh, context); });
+    extraction.repairs.mended_places += report.mended;
+    extraction.repairs.restored_quads += report.restored_quads;
+    extraction.flawed = report.flawed_after;
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
-  }
-
-  ImproveOptions improve_options() const {
-    ImproveOptions o;
-    o.fit = options_.fit;
-    o.target_length = length_;
-    o.usual_size = doubtful_size_;
-    constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
-    if (wishes_.most_stretch > 1) o.aspect_power = 1;
-    else if (!wishes_.density.empty()) o.aspect_power = kAspectOfSizes;
-    return o;
   }
 
   void settle_hard_guides(Extraction& extraction) {
     if (plan_.guides.empty()) return;
     const RunContext context = context_.in_stage("hard guides", 0.97, 0.97);
     clock_.measure("hard guides", [&] {
-      const GuideMap directions = guides_on(wishes_, mesh_);
-      ImproveOptions o = improve_options();
-      o.guides = &directions;
       GuidedQuads guided{std::move(extraction.mesh), plan_.features, {}, {}, extraction.flawed};
-      settle_guides(guided, plan_, guides_, o, options_, whole_, context);
+      settle_guides(guided, plan_, guides_, finishing_.options(), options_, whole_, context);
       extraction.mesh = std::move(guided.mesh);
       extraction.features = std::move(guided.features);
       extraction.rings = std::move(guided.rings);
@@ -351,32 +331,16 @@ class ComponentRemesher {
     keep_clear_of_planes(extraction.mesh, options_.symmetry.planes);
   }
 
-  /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
-  void make_mirrorable(const SurfaceIndex& index, QuadMesh& mesh) {
-    if (options_.symmetry.planes == 0) return;
-    if (open_seams(mesh, plan_.curve_planes) > 0) {
-      order_feature_edges(mesh, mesh_, plan_.features);
-      ImproveOptions o = improve_options();
-      o.edit_connectivity = false;
-      if (options_.improve)
-        improve_quads(mesh, mesh_, plan_.features, index, o, context_.in_stage("improve", 0.97, 0.97), &whole_);
-      // What mends flawed quads changes connectivity in any case; there is no third round.
-      if (open_seams(mesh, plan_.curve_planes) > 0) order_feature_edges(mesh, mesh_, plan_.features);
-    }
-    keep_clear_of_planes(mesh, options_.symmetry.planes);
-  }
-
   const ComponentPlan& plan_;
   const TriangleMesh& mesh_;
   const SurfaceIndex& whole_;
-  double doubtful_size_, least_size_;  // scene units
   const Wishes& wishes_;
   const HardGuides& guides_;
   const RemeshOptions& options_;
+  Finishing finishing_;
   const Settings& settings_;
   StageClock& clock_;
   const RunContext& context_;
-  double length_ = 0;
   WorkingSurface surface_;
   FrameField sized_;  ///< of the latest try
   std::vector<double> direction_weight_;  ///< see SizingOptions
@@ -394,18 +358,34 @@ double badness(const ComponentResult& result) {
   return (result.flawed_quads + 1e-4 * result.missed_counts + 1e-8 * result.doubtful_quads) * quads;
 }
 
+bool has_inner_features(const ComponentPlan& plan) {
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.mesh.opposite(h) >= 0) return true;
+  return false;
+}
+
 }  // namespace
 
-ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
                                  StageClock& clock, const RunContext& context) {
+  // Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
+  // edges stay: fewer are to be asked for from the start.
+  constexpr double kExtractable = 0.5;
+  const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
+  const double least = kExtractable * quads_for_topology(planned.mesh);
+  const bool are_few = planned.guides.empty() && count < least && planned.quads < least;
+  const bool is_rough = are_few && !has_inner_features(planned);
+  ComponentPlan plan = planned;
+  if (is_rough) scale_plan(plan, least / planned.quads);
   ComponentResult best;
   std::string broken;
   bool any = false;
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
-  for (const Settings& settings : kSettings) {
+  for (Settings settings : kSettings) {
+    settings.is_rough = is_rough;
     if (any && settings.as_needed && best.flawed_quads == 0) break;
     if (any && !settings.as_needed && best.flawed_quads > kManyFlaws) continue;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
@@ -421,6 +401,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
       ComponentResult result =
           ComponentRemesher(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass).run();
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
+      if (are_few) settle_count(planned, count, whole, wishes, options, result, clock, pass);
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;
       if (any) budget.left -= result.work;
@@ -439,6 +420,7 @@ ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& 
     end += 0.5 * (1 - end);
   }
   if (!any) throw InternalError("remesh", broken);
+  if (!are_few) settle_count(planned, count, whole, wishes, options, best, clock, context);
   return best;
 }
 

@@ -42,9 +42,10 @@ struct WorkBudget {
 };
 
 /// Remeshes one connected component (paper 3 and 4, then improvement).
+/// \param wanted  number of quads to come near in the end, whatever the plan's lengths make
 /// \param whole  the surface that the component is part of
 /// \param budget  what passes beyond the first take is taken from it, at most half of what is left
-ComponentResult remesh_component(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+ComponentResult remesh_component(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context);
 

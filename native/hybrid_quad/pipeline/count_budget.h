@@ -20,6 +20,8 @@ class CountBudget {
     constexpr double kLeast = 0.5, kMost = 1.5;
     return planned_ > 0 ? std::clamp(left_ / planned_, kLeast, kMost) : 1;
   }
+  /// Quads for a component that is left, of those that are left, whatever it can do with.
+  double share(double planned) const { return planned_ > 0 ? std::max(0.0, left_) * planned / planned_ : planned; }
   void spend(double planned, double got) {
     planned_ -= planned;
     left_ -= got;

@@ -34,17 +34,15 @@ class ExtractionChoice {
  public:
   /// \param tolerance  of the logarithm of the number
   /// \param enough_with_flaws  so many tries near the number, with flaws, are enough
-  ExtractionChoice(double quads_asked, double tolerance, int enough_with_flaws)
-      : asked_(quads_asked), tolerance_(tolerance), enough_(enough_with_flaws) {}
+  /// \param far  so far off (tolerance) improving makes no sense
+  ExtractionChoice(double quads_asked, double tolerance, int enough_with_flaws, double far)
+      : asked_(quads_asked), tolerance_(tolerance), far_(far), enough_(enough_with_flaws) {}
 
   bool any() const { return best_.has_value(); }
   /// How many times as many quads as in the end have to be extracted: improvement takes some.
   double lost() const { return lost_; }
   /// So far off that improving it makes no sense, unless it is all there is.
-  bool is_far(const Extraction& e) const {
-    constexpr double kFar = 0.15;
-    return error(e) >= kFar;
-  }
+  bool is_far(const Extraction& e) const { return error(e) >= far_; }
   void set_aside(Extraction e) {
     if (!nearest_ || error(e) < error(*nearest_)) nearest_ = std::move(e);
   }
@@ -67,7 +65,7 @@ class ExtractionChoice {
   double error_of(double count) const { return std::abs(std::log(count / asked_)); }
   double error(const Extraction& e) const { return error_of(e.count() / lost_); }
 
-  double asked_, tolerance_;
+  double asked_, tolerance_, far_;
   int enough_;
   double lost_ = 1;
   int near_with_flaws_ = 0;

@@ -10,6 +10,7 @@
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/guided_input.h"
 #include "hybrid_quad/pipeline/limit_fit.h"
@@ -69,6 +70,8 @@ std::vector<Component> split_components(const TriangleMesh& mesh) {
   }
   return out;
 }
+
+constexpr double kCountTolerance = 0.1;  // off by more, a warning says so
 
 /// Of a WorkBudget: about half a minute, and another for ten thousand quads.
 constexpr double kExtraWork = 5e5, kExtraWorkPerQuad = 50;
@@ -188,6 +191,13 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
   }
 }
 
+std::string count_warning(const RemeshReport& report, double wanted) {
+  const std::string numbers = "asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads);
+  if (report.fewest_quads > wanted)
+    return numbers + ": with so many parts, handles and holes there can't be fewer than " + std::to_string(report.fewest_quads);
+  return numbers + ": features or small parts need another number";
+}
+
 /// The input's surface in coordinates in which its size and place make no difference, and what is asked of it there.
 void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& options, RunContext& context) {
   std::vector<Vector3> positions = built.mesh.positions();
@@ -219,6 +229,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   added_rings += other.added_rings;
   split_polychords += other.split_polychords;
   fitted_rows += other.fitted_rows;
+  fitted_quads += other.fitted_quads;
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
   opened_flat_quads += other.opened_flat_quads;
@@ -292,6 +303,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     make_room_for_count(plans, wanted / images, domain.options.symmetry.planes, plan_context);
   });
 
+  constexpr double kLeastOfPlan = 0.5;  // no component pays with all its shape for what others cost
   const SurfaceIndex whole(built.mesh, {});
   std::vector<ComponentResult> parts(components.size());
   CountBudget budget(plans, is_by_count ? wanted / images : 0);
@@ -304,7 +316,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
     const double planned = plans[i].quads;
     if (is_by_count) scale_plan(plans[i], budget.factor());
-    parts[i] = remesh_component(plans[i], whole, wishes[i], guides, domain.options, work, clock, part_context);
+    const double wanted_here = is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plans[i].quads) : planned;
+    parts[i] = remesh_component(plans[i], wanted_here, whole, wishes[i], guides, domain.options, work, clock, part_context);
     budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
     done += share;
   }
@@ -334,9 +347,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   report.patches.combinatorial_area_fraction = combinatorial_area / area;
   report.quads = static_cast<int>(result.mesh.quads.size());
   report.vertices = static_cast<int>(result.mesh.positions.size());
-  if (std::abs(report.quads / wanted - 1) > 0.1)
-    report.warnings.push_back("asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads) +
-                              ": features or small parts need another number");
+  for (const ComponentPlan& plan : plans) report.fewest_quads += images * fewest_quads(plan.mesh);
+  if (std::abs(report.quads / wanted - 1) > kCountTolerance) report.warnings.push_back(count_warning(report, wanted));
   for (const ComponentPlan& plan : plans) report.features_given_way += images * plan.given_way;
   if (report.features_given_way > 0)
     report.warnings.push_back(std::to_string(report.features_given_way) +

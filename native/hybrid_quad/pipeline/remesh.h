@@ -83,6 +83,7 @@ struct RepairRecord {
   int added_rings = 0;           ///< rings of quads and stars that undo double edges where nothing can be removed
   int split_polychords = 0;      ///< strips doubled to make room
   int fitted_rows = 0;           ///< strips doubled or taken out for the number of quads
+  int fitted_quads = 0;          ///< quads put in or taken out one by one for the number
   int opened_straight_quads = 0; ///< quads with three sides on one feature
   int mended_places = 0;         ///< changes that only flawed quads called for
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
@@ -129,6 +130,7 @@ struct GuideRecord {
 struct RemeshReport {
   int input_vertices = 0, input_faces = 0, working_faces = 0, components = 0;
   int quads = 0, vertices = 0;
+  int fewest_quads = 0;                  ///< no mesh of quads with these parts, handles and holes has fewer
   int irregular_vertices = 0;            ///< interior vertices of valence != 4
   int field_singularities = 0;           ///< inside the surface, on features too
   int feature_singularities = 0;         ///< those of them that features force: corners, mostly

@@ -7,6 +7,7 @@
 
 #include "hybrid_quad/features/features_with_room.h"
 #include "hybrid_quad/mesh/edge_bisection.h"
+#include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
@@ -18,25 +19,6 @@ constexpr double kMostGiving = 2;
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
 constexpr double kTooCrowded = 0.6, kRoomy = 0.3;
-
-int boundary_loops(const TriangleMesh& mesh) {
-  std::vector<char> seen(mesh.vertex_count(), 0);
-  int loops = 0;
-  for (int start = 0; start < mesh.vertex_count(); ++start) {
-    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
-    ++loops;
-    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
-  }
-  return loops;
-}
-
-/// A component needs some quads to be a mesh at all, however small it is, and more for every handle and hole.
-double least_quads(const TriangleMesh& mesh) {
-  constexpr double kSphere = 16, kHandle = 32, kHole = 8;
-  const int loops = boundary_loops(mesh);
-  const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
-  return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
-}
 
 /// The set of hard guides on the edge of every half-edge, -1: none; empty where there are none at all.
 std::vector<int> guides_on_edges(const TriangleMesh& mesh, const BisectedMesh& fine, const std::vector<int>& guides) {
@@ -201,7 +183,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
   context.checkpoint();
   ComponentPlan plan;
-  plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / least_quads(mesh)));
+  plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / quads_for_topology(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
   const double wanted = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
   const double longest =

@@ -69,21 +69,6 @@ int split_rungs(QuadComplex& complex, const std::vector<PlaneSet>& curve_planes)
   return count;
 }
 
-QuadComplex complex_of(const QuadMesh& mesh) {
-  QuadComplex complex = complex_of_quads(mesh.positions, mesh.quads);
-  complex.kind = mesh.kind;
-  complex.anchor = mesh.anchor;
-  std::vector<std::pair<std::array<int, 2>, int>> curve_of;
-  for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) curve_of.push_back({{std::min(e.a, e.b), std::max(e.a, e.b)}, e.curve});
-  std::sort(curve_of.begin(), curve_of.end());
-  for (int d = 0; d < static_cast<int>(complex.opposite.size()); ++d) {
-    const std::array<int, 2> ends{std::min(complex.from(d), complex.to(d)), std::max(complex.from(d), complex.to(d))};
-    const auto at = std::lower_bound(curve_of.begin(), curve_of.end(), std::make_pair(ends, -1));
-    if (at != curve_of.end() && at->first == ends) complex.curve[d] = at->second;
-  }
-  return complex;
-}
-
 }  // namespace
 
 PlaneSet planes_of_edge(const TriangleMesh& mesh, int h, PlaneSet planes) {

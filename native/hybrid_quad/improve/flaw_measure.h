@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/quality/quality.h"
+
+namespace hybrid_quad {
+
+/// How flawed (quality.h) some quads are together, as a Trial::Measure: what counts is the very property that a judge checks.
+class FlawMeasure {
+ public:
+  /// \param whole, least_size  the surface to measure by, and the other parameter of flawed_quads
+  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, double least_size)
+      : piece_(piece), whole_(whole), least_size_(least_size) {}
+
+  bool is_flawed(int q) const {
+    constexpr double kLeastArea = 1e-9;
+    const std::array<Vector3, 4> p = corners(q);
+    const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
+    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, least_size_);
+  }
+
+  /// Minus the number of flawed ones; bad shapes together make a difference below kMostForShapes.
+  double operator()(const std::vector<int>& quads) const {
+    constexpr double kFair = 0.2;
+    double flawed = 0, bad = 0;
+    for (const int q : quads) {
+      flawed += is_flawed(q);
+      const std::array<Vector3, 4> p = corners(q);
+      bad += std::max(0.0, kFair - scaled_jacobian(p[0], p[1], p[2], p[3]));
+    }
+    return -flawed - kMostForShapes * bad / (1 + bad);
+  }
+  const SurfaceIndex& surface() const { return whole_; }
+
+  static constexpr double kMostForShapes = 0.4;
+
+ private:
+  std::array<Vector3, 4> corners(int q) const {
+    const auto& v = piece_.mesh.quad(q);
+    const auto& p = piece_.mesh.positions;
+    return {p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
+  }
+
+  const Workpiece& piece_;
+  const SurfaceIndex& whole_;
+  double least_size_;
+};
+
+}  // namespace hybrid_quad

@@ -1,0 +1,51 @@
+#include "hybrid_quad/pipeline/fewest_quads.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr int kLeastEdgesOfLoop = 4;  // of a border
+
+/// Whether numbers of vertices and edges of a connected mesh allow so many quads with so many edges on the boundary.
+bool may_exist(int quads, int border, int euler) {
+  constexpr long long kLeastAtVertex = 3, kLeastVertices = 4;  // quads at one inside; of a quad
+  const long long edges = 2LL * quads + border / 2, vertices = euler + edges - quads;
+  if (vertices < kLeastVertices || edges > vertices * (vertices - 1) / 2) return false;
+  return border > 0 || 4LL * quads >= kLeastAtVertex * vertices;
+}
+
+}  // namespace
+
+int boundary_loops(const TriangleMesh& mesh) {
+  std::vector<char> seen(mesh.vertex_count(), 0);
+  int loops = 0;
+  for (int start = 0; start < mesh.vertex_count(); ++start) {
+    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
+    ++loops;
+    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
+  }
+  return loops;
+}
+
+int fewest_quads(int euler_characteristic, int loops) {
+  const int least_border = kLeastEdgesOfLoop * loops;
+  for (int quads = 1;; ++quads) {
+    // Every border is even: so are the sides of the quads and twice the edges inside.
+    const int most_border = loops > 0 ? 4 * quads : 0;
+    for (int border = least_border; border <= most_border; border += 2)
+      if (may_exist(quads, border, euler_characteristic)) return quads;
+  }
+}
+
+int fewest_quads(const TriangleMesh& component) {
+  return fewest_quads(component.euler_characteristic(), boundary_loops(component));
+}
+
+double quads_for_topology(const TriangleMesh& mesh) {
+  constexpr double kSphere = 16, kHandle = 32, kHole = 8;
+  const int loops = boundary_loops(mesh);
+  const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
+  return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "hybrid_quad/mesh/triangle_mesh.h"
+
+namespace hybrid_quad {
+
+int boundary_loops(const TriangleMesh& mesh);
+
+/// No valid mesh of quads (violations_of) that is connected and of this topology has fewer quads: there would not be enough pairs of
+/// vertices for its edges, or vertices with fewer than three quads.
+/// \param loops  of the boundary
+int fewest_quads(int euler_characteristic, int loops);
+int fewest_quads(const TriangleMesh& component);
+
+/// How many it should have to be a mesh of good quads at all: some, and more for every handle and hole.
+double quads_for_topology(const TriangleMesh& mesh);
+
+}  // namespace hybrid_quad

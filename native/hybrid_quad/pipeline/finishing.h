@@ -1,0 +1,35 @@
+#pragma once
+
+#include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/pipeline/size_plan.h"
+#include "hybrid_quad/pipeline/wishes.h"
+
+namespace hybrid_quad {
+
+/// How the extracted quads of a component are improved and made fit for mirroring.
+class Finishing {
+ public:
+  /// \param whole  the surface that the component is part of
+  Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options);
+  Finishing(const Finishing&) = delete;
+  Finishing& operator=(const Finishing&) = delete;
+
+  const ImproveOptions& options() const { return improve_; }
+  ImproveReport improve(QuadMesh& mesh, const RunContext& context) const;
+  /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
+  void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
+
+  /// Quads that are flawed whatever their size, and with these smaller ones that only just pass that test (flawed_quads).
+  std::vector<int> flawed(const QuadMesh& mesh, int threads) const;
+  std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
+
+ private:
+  const ComponentPlan& plan_;
+  const SurfaceIndex& whole_;
+  const RemeshOptions& asked_;
+  GuideMap guides_;
+  ImproveOptions improve_;
+};
+
+}  // namespace hybrid_quad

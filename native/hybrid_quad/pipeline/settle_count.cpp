@@ -1,0 +1,139 @@
+#include "hybrid_quad/pipeline/settle_count.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "hybrid_quad/assemble/feature_chains.h"
+#include "hybrid_quad/mesh/quad_count.h"
+#include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/finishing.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kNear = 0.045;   ///< of the logarithm of the number: off by less is left as it is
+constexpr double kAim = 0.02;     ///< of the number
+constexpr double kLeastGain = 1e-9;
+constexpr int kRowRounds = 2, kRounds = 6;
+/// Improving takes longer than all else, most of all where it is in vain.
+constexpr int kMostImprovements = 6;
+
+class CountSettling {
+ public:
+  CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole, ComponentResult& result,
+                const RunContext& context)
+      : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context), now_(measured(result.mesh)) {
+    for (const FeatureCurve& curve : plan.features.curves) counted_.push_back(curve.asked_count > 0);
+  }
+
+  void run() {
+    if (!is_far()) return;
+    const int before = now_.quads;
+    int rows = 0;
+    for (int i = 0, last = -1; i < kRowRounds && is_far() && rows != last && may_improve(); ++i) {
+      last = rows;
+      rows += change_rows();
+    }
+    bool is_rough = false;
+    for (int i = 0; i < kRounds && is_far() && change_quads(); ++i) is_rough = true;
+    if (is_rough) improve_again();
+    if (now_.quads == before) return;
+    result_.repairs.fitted_rows += rows;
+    result_.flawed_quads = now_.flawed;
+    result_.doubtful_quads = now_.doubtful;
+    result_.missed_counts = now_.missed;
+  }
+
+ private:
+  struct Measured {
+    int quads = 0, flawed = 0, doubtful = 0, missed = 0;
+    double error = 0;  ///< | log(quads / asked) |
+  };
+
+  Measured measured(const QuadMesh& mesh) const {
+    const int quads = static_cast<int>(mesh.quads.size());
+    return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()), static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()),
+            missed_counts(plan_.features, mesh), std::abs(std::log(quads / wanted_))};
+  }
+
+  bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
+  double tolerance() const { return std::max(1.0, kAim * wanted_); }
+
+  /// \returns whether `mesh` is sound and no worse; then it is the result
+  bool take(QuadMesh mesh, double most_error) {
+    if (!violations_of(mesh).empty()) return false;
+    const Measured then = measured(mesh);
+    if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed) return false;
+    now_ = then;
+    result_.mesh = std::move(mesh);
+    return true;
+  }
+  bool take_if_nearer(QuadMesh mesh) { return take(std::move(mesh), now_.error - kLeastGain); }
+
+  /// \returns rows changed
+  int change_rows() {
+    QuadComplex complex = complex_of(result_.mesh);
+    const int rows = fit_quad_count(complex, wanted_, tolerance(), counted_);
+    if (rows == 0) return 0;
+    QuadMesh mesh = to_quad_mesh(complex);
+    order_feature_edges(mesh, plan_.mesh, plan_.features);
+    return take_if_nearer(improved(std::move(mesh))) ? rows : 0;
+  }
+
+  /// \returns whether the number is nearer
+  bool change_quads() {
+    // Where all that is missing is too much at once, half of it may do.
+    constexpr int kHalvings = 5;
+    int target = static_cast<int>(std::lround(wanted_));
+    for (int i = 0; i < kHalvings; ++i) {
+      QuadMesh bare = result_.mesh;
+      const int changed = change_quad_number(bare, plan_.mesh, plan_.features, *plan_.index, finishing_.options(),
+                                             {target, plan_.target}, context_, &whole_);
+      if (changed == 0) return false;
+      target = now_.quads + changed / 2;
+      finishing_.make_mirrorable(bare, context_);
+      if (take_if_nearer(bare) || (may_improve() && take_if_nearer(improved(std::move(bare))))) {
+        result_.repairs.fitted_quads += std::abs(changed);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool may_improve() const { return improvements_ < kMostImprovements; }
+
+  QuadMesh improved(QuadMesh mesh) {
+    ++improvements_;
+    finishing_.improve(mesh, context_);
+    finishing_.make_mirrorable(mesh, context_);
+    return mesh;
+  }
+
+  /// Shapes and valences, as long as the number stays near.
+  void improve_again() { take(improved(result_.mesh), std::max(kNear, now_.error)); }
+
+  const ComponentPlan& plan_;
+  double wanted_;  ///< quads
+  const Finishing& finishing_;
+  const SurfaceIndex& whole_;
+  ComponentResult& result_;
+  const RunContext& context_;
+  std::vector<char> counted_;
+  int improvements_ = 0;
+  Measured now_;
+};
+
+}  // namespace
+
+void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
+                  ComponentResult& result, StageClock& clock, const RunContext& context) {
+  if (!options.improve || !plan.guides.empty() || wishes.most_stretch > 1) return;
+  const Finishing finishing(plan, whole, wishes, options);
+  const RunContext stage = context.in_stage("count", 0.97, 0.97);
+  clock.measure("count", [&] { CountSettling(plan, wanted, finishing, whole, result, stage).run(); });
+}
+
+}  // namespace hybrid_quad

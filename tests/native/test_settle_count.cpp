@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/remesh.h"
+#include "support/meshes.h"
+#include "support/quad_complexes.h"
+
+namespace hybrid_quad {
+namespace {
+
+TEST(FewestQuads, AreThoseOfTheCubeForASphere) {
+  EXPECT_EQ(fewest_quads(2, 0), 6);
+  EXPECT_EQ(fewest_quads(test::box(3)), 6);
+  EXPECT_EQ(fewest_quads(test::flat_grid(3, 3)), 1);
+}
+
+TEST(FewestQuads, NoMeshHasFewer) {
+  for (const QuadComplex& c : {test::quad_box(1, 1, 1), test::quad_torus(3, 3), test::quad_grid(1, 1), test::quad_grid(2, 3), test::quad_tube(4, 1)})
+    EXPECT_GE(c.quad_count(), fewest_quads(euler_characteristic(c), static_cast<int>(test::border_loop_lengths(c).size())));
+}
+
+TEST(FewestQuads, GrowWithHandles) {
+  for (int handles = 1; handles < 30; ++handles) EXPECT_LT(fewest_quads(2 - 2 * handles, 0), fewest_quads(-2 * handles, 0)) << handles;
+  EXPECT_GT(fewest_quads(-46, 0), 46);
+}
+
+/// Spheres in a row, one larger than the others.
+PolygonSoup spheres(int count) {
+  PolygonSoup all;
+  for (int i = 0; i < count; ++i) {
+    PolygonSoup one = test::soup_of(test::icosphere(3, i == 0 ? 2 : 0.6));
+    const int base = static_cast<int>(all.positions.size());
+    for (const Vector3& p : one.positions) all.positions.push_back(p + Vector3(3.0 * i, 0, 0));
+    for (const int v : one.face_vertices) all.face_vertices.push_back(base + v);
+    all.face_sizes.insert(all.face_sizes.end(), one.face_sizes.begin(), one.face_sizes.end());
+  }
+  return all;
+}
+
+RemeshResult remeshed(const PolygonSoup& soup, int quads) {
+  RemeshOptions options;
+  options.quads = quads;
+  options.use_sharp_angle = false;
+  return remesh(soup, options, RunContext{});
+}
+
+TEST(SettleCount, ManyPartsComeNearFewQuads) {
+  constexpr int kParts = 10;
+  const PolygonSoup soup = spheres(kParts);
+  for (const int asked : {100, 140}) {
+    const RemeshResult result = remeshed(soup, asked);
+    EXPECT_TRUE(violations_of(result.mesh).empty());
+    EXPECT_EQ(result.report.flawed_quads, 0);
+    EXPECT_LE(std::abs(result.report.quads - asked), 0.1 * asked) << asked;
+    EXPECT_EQ(result.report.fewest_quads, 6 * kParts);
+  }
+}
+
+TEST(SettleCount, SaysWhereANumberIsImpossible) {
+  const RemeshResult result = remeshed(spheres(10), 30);
+  EXPECT_GE(result.report.quads, 60);
+  EXPECT_TRUE(violations_of(result.mesh).empty());
+  const auto& warnings = result.report.warnings;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) { return w.find("fewer than 60") != std::string::npos; }));
+}
+
+TEST(SettleCount, HandlesTakeFewQuads) {
+  const RemeshResult result = remeshed(test::soup_of(test::torus(60, 30)), 24);
+  EXPECT_TRUE(violations_of(result.mesh).empty());
+  EXPECT_EQ(result.report.flawed_quads, 0);
+  EXPECT_LE(std::abs(result.report.quads - 24), 2);
+}
+
+}  // namespace
+}  // namespace hybrid_quad
