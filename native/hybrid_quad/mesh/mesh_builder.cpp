@@ -331,8 +331,8 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   BuiltMesh built = glue();
   context.checkpoint();
-  drop_negligible_components(built);
   put_in_order(built);
+  drop_negligible_components(built);
   return built;
 }
 
