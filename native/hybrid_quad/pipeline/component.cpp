@@ -421,6 +421,7 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(planned, count, whole, wishes, options, best, clock, context);
+  best.repairs.opened_flat_quads += open_flat_quads(best.mesh);
   return best;
 }
 
