@@ -153,7 +153,10 @@ def test_tiny_parts_do_not_take_many_times_the_asked_quads():
 
 def test_what_is_odd_but_possible_is_listed_and_left():
     vertices, faces = surfaces.sphere(4)
-    other = np.concatenate([vertices, vertices + np.array([0.7, 0.1, 0.2])]), np.concatenate([faces, faces + len(vertices)])
+    other = (
+        np.concatenate([vertices, vertices + np.array([0.7, 0.1, 0.2])]),
+        np.concatenate([faces, faces + len(vertices)]),
+    )
     (found,) = hybrid_quad.check(*other)
     assert (found.code, found.element_kind, found.kept, found.repairable) == ("self_intersection", "face", True, True)
     assert 0 < len(found) < len(other[1])

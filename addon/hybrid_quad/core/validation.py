@@ -158,9 +158,7 @@ def _check_connectivity(found: list[str], darts: _Darts) -> None:
     _note(found, "vertices whose faces form more than one fan", np.bincount(fans, minlength=darts.vertex_count) > 1)
     _note(found, "interior vertices with fewer than three faces", (valence > 0) & (valence < 3) & ~on_boundary)
     here, there = faces_of_dart[first], faces_of_dart[second]
-    pairs, times = np.unique(
-        np.minimum(here, there) * len(darts.origin) + np.maximum(here, there), return_counts=True
-    )
+    pairs, times = np.unique(np.minimum(here, there) * len(darts.origin) + np.maximum(here, there), return_counts=True)
     doubled = np.stack(np.divmod(pairs[times > 1], len(darts.origin)), axis=1)
     if len(doubled):
         found.append(f"{len(doubled)} pairs of faces with more than one common edge: {doubled[:_SHOWN].tolist()}")
