@@ -4,11 +4,12 @@
 
 namespace hybrid_quad {
 
+/// Closed curves that the boundary consists of, 0 for a closed surface.
 int boundary_loops(const TriangleMesh& mesh);
 
 /// No valid mesh of quads (violations_of) that is connected and of this topology has fewer quads: there would not be enough pairs of
 /// vertices for its edges, or vertices with fewer than three quads.
-/// \param loops  of the boundary
+/// \param euler_characteristic  V - E + F  \param loops  of the boundary
 int fewest_quads(int euler_characteristic, int loops);
 int fewest_quads(const TriangleMesh& component);
 
