@@ -119,7 +119,7 @@ def test_modifiers_are_part_of_what_is_remeshed(mode):
     result = remesh()
     # Subdivision rounds the cube's corners, which lie sqrt(3) from the middle.
     assert np.linalg.norm(points_of(result), axis=1).max() < 1.4
-    assert [m.name for m in result.modifiers] == ([] if mode == "NEW" else ["Off"])
+    assert [m.name for m in result.modifiers] == ["Off"]
     assert_sound(result)
 
 

@@ -12,7 +12,6 @@ import bmesh
 import bpy
 import numpy as np
 import numpy.typing as npt
-from mathutils.kdtree import KDTree
 
 from ..core.edge_borders import EdgeSides, edge_keys
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
@@ -87,6 +86,67 @@ _STORES = (
     _Store(FREESTYLE, "use_freestyle_mark", "freestyle_edge", "BOOLEAN"),  # a property before Blender 5.0
     _Store(FEATURE, "", FEATURE_ATTRIBUTE, "BOOLEAN"),
 )
+
+
+class VertexStore(NamedTuple):
+    """Where Blender keeps a weight of vertices.
+
+    Attributes
+    ----------
+    attribute : str
+        From Blender 4.0 on.
+    former : str
+        Before: the mesh's or the vertices' own.
+    layer : str
+        In a bmesh.
+    """
+
+    attribute: str
+    former: str
+    layer: str
+
+    def read(self, mesh: bpy.types.Mesh) -> Any:
+        """(n,) float32, or None where a mesh has none."""
+        items = self._items(mesh)
+        return None if items is None else _read(items, self._value, np.float32)
+
+    def write(self, mesh: bpy.types.Mesh, values: Any) -> None:
+        """Gives a mesh these weights (n,)."""
+        if self._items(mesh) is None:
+            if self._is_attribute:
+                mesh.attributes.new(self.attribute, "FLOAT", "POINT")
+            else:  # which Python cannot make before Blender 3.6 but by a bmesh
+                edited = bmesh.new()
+                edited.from_mesh(mesh)
+                getattr(edited.verts.layers, self.layer).verify()
+                edited.to_mesh(mesh)
+                edited.free()
+        self._items(mesh).foreach_set(self._value, np.ascontiguousarray(values, np.float32))
+
+    @property
+    def _is_attribute(self) -> bool:
+        return bpy.app.version >= (4, 0)
+
+    @property
+    def _value(self) -> str:
+        return self.former if self._is_of_vertices else "value"
+
+    @property
+    def _is_of_vertices(self) -> bool:
+        return self.former in bpy.types.MeshVertex.bl_rna.properties
+
+    def _items(self, mesh: bpy.types.Mesh) -> Any:
+        if self._is_of_vertices:
+            return mesh.vertices
+        if self._is_attribute:
+            attribute = mesh.attributes.get(self.attribute)
+            return None if attribute is None else attribute.data
+        layers = getattr(mesh, self.former)
+        return layers[0].data if layers else None
+
+
+VERTEX_CREASE = VertexStore("crease_vert", "vertex_creases", "crease")
+VERTEX_BEVEL = VertexStore("bevel_weight_vert", "bevel_weight", "bevel_weight")
 
 
 def marks_asked(settings: Any) -> int:
@@ -164,7 +224,7 @@ def crease(mesh: bpy.types.Mesh, edges: IntArray, vertices: npt.NDArray[np.int64
     if len(vertices):
         of_vertex = np.zeros(len(mesh.vertices), np.float32)
         of_vertex[vertices] = 1.0
-        _vertex_creases(mesh).data.foreach_set("value", of_vertex)
+        VERTEX_CREASE.write(mesh, of_vertex)
 
 
 def add_sharp_by_angle(
@@ -174,30 +234,6 @@ def add_sharp_by_angle(
     result = marks.copy()
     result[EdgeSides(polygons, edges, len(vertices)).where_faces_bend(vertices, angle)] |= SHARP
     return result
-
-
-def nearest_edges(points: FloatArray, vertices: FloatArray, edges: IntArray, spacing: float) -> npt.NDArray[np.int64]:
-    """For every point the nearest of some edges, of which there must be one.
-
-    Parameters
-    ----------
-    points : (m, 3) float64
-    vertices, edges
-        The edges' ends.
-    spacing : float
-        Edges are compared by samples at most this far apart.
-    """
-    begin, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
-    count = np.maximum(1, np.ceil(np.linalg.norm(end - begin, axis=1) / spacing)).astype(np.int64)
-    owner = np.repeat(np.arange(len(edges)), count)
-    within = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    share = ((within + 0.5) / count[owner])[:, None]
-    samples = (1 - share) * begin[owner] + share * end[owner]
-    tree = KDTree(len(samples))
-    for index, sample in enumerate(samples):
-        tree.insert(sample, index)
-    tree.balance()
-    return owner[[tree.find(point)[1] for point in points]]
 
 
 def _read_store(mesh: bpy.types.Mesh, store: _Store) -> Any:
@@ -218,18 +254,6 @@ def _write_store(mesh: bpy.types.Mesh, store: _Store, values: Any) -> None:
     if attribute is None:
         attribute = mesh.attributes.new(store.attribute, store.data_type, "EDGE")
     attribute.data.foreach_set("value", values)
-
-
-def _vertex_creases(mesh: bpy.types.Mesh) -> Any:
-    if bpy.app.version >= (4, 0):
-        return mesh.attributes.get("crease_vert") or mesh.attributes.new("crease_vert", "FLOAT", "POINT")
-    if not mesh.vertex_creases:  # which Python cannot make before Blender 3.6 but by a bmesh
-        edited = bmesh.new()
-        edited.from_mesh(mesh)
-        edited.verts.layers.crease.verify()
-        edited.to_mesh(mesh)
-        edited.free()
-    return mesh.vertex_creases[0]
 
 
 def _read_face_sets(mesh: bpy.types.Mesh) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -13,6 +13,9 @@ from ..core.errors import InputError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from . import edge_marks, guide_attributes
 from .edge_marks import EdgeValues
+from .transfer import layers
+from .transfer.layers import SourceLayers
+from .transfer.rest import at_rest
 
 _FLATTEST = 1e-9  # ratio of the smallest to the largest scale below which no way back exists
 
@@ -41,10 +44,10 @@ class MeshSource:
         Painted density: 2 for edges half as long.
     counts : (k,) int32 or None
         Number of quads that each edge asks for along the chain of edges of its value; 0 and less: free.
-    face_materials, face_smooth : (#F,)
-        Material slot and smooth shading of each polygon.
     materials : list
         The material (or None) of each slot.
+    layers : SourceLayers or None
+        What the result takes along, where the source was read for a result.
     """
 
     linear: FloatArray
@@ -56,9 +59,8 @@ class MeshSource:
     guides_of_faces: bool
     density: FloatArray | None
     counts: IntArray | None
-    face_materials: IntArray
-    face_smooth: npt.NDArray[np.bool_]
     materials: list[Any]
+    layers: SourceLayers | None = None
 
     @property
     def marks(self) -> edge_marks.MarkArray:
@@ -75,7 +77,13 @@ class MeshSource:
         return np.linalg.solve(self.linear, points.T).T
 
 
-def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, along_axes: bool = False) -> MeshSource:
+def read_source(
+    obj: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    *,
+    along_axes: bool = False,
+    kinds: frozenset[str] | None = None,
+) -> MeshSource:
     """Copies an object's evaluated mesh, modifiers applied.
 
     Parameters
@@ -83,6 +91,9 @@ def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, along_
     along_axes : bool
         Keep the object's axes as the axes of the run's space, as mirror planes need it: the mesh is scaled along them as
         in the scene, but not turned, mirrored or sheared.
+    kinds : frozenset of str, optional
+        Read it for a result that takes these kinds of data along (`transfer.kinds`): with `layers`, and without the
+        effect of what stays alive on the result.
 
     Raises
     ------
@@ -101,13 +112,20 @@ def read_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, along_
         raise InputError("flat_scale", f'"{obj.name}" is scaled to zero along an axis, so it has no surface to remesh')
     if along_axes:
         linear = np.diag(np.linalg.norm(linear, axis=0))
-    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
-    try:
-        if not mesh.polygons:
-            raise InputError("no_faces", f'"{obj.name}" has no faces')
-        return _copy_of(mesh, linear)
-    finally:
-        evaluated.to_mesh_clear()
+    with at_rest(obj, depsgraph, kinds or frozenset()) as rest:
+        shown = rest.shown.evaluated_get(depsgraph)
+        mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+        try:
+            if not mesh.polygons:
+                raise InputError("no_faces", f'"{obj.name}" has no faces')
+            source = _copy_of(mesh, linear)
+            if kinds is None:
+                return source
+            own = layers.read(rest, mesh, linear, kinds)
+            points = _read(mesh.vertices, "co", np.float32, 3).reshape(-1, 3)
+        finally:
+            shown.to_mesh_clear()
+        return replace(source, layers=layers.with_keys(own, rest, depsgraph, points))
 
 
 def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
@@ -128,8 +146,6 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
         guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
         counts=guide_attributes.read_counts(mesh),
-        face_materials=_read(mesh.polygons, "material_index", np.int32),
-        face_smooth=_read(mesh.polygons, "use_smooth", np.bool_),
         materials=[material.original if material else None for material in mesh.materials],
     )
 

@@ -18,6 +18,7 @@ from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_remesh
 from .properties import SIZE_SETTINGS
 from .result_mesh import read_report
+from .transfer.kinds import KINDS
 
 
 class _HybridQuadPanel:
@@ -181,6 +182,26 @@ class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
         row.prop(settings, "use_auto_symmetry", toggle=True)
 
 
+class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
+    """What the result takes along."""
+
+    bl_label = "Transfer"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad
+        columns: dict[str, Any] = {}
+        for kind in KINDS:
+            if kind.group not in columns:
+                columns[kind.group] = layout.column(heading=kind.group)
+            columns[kind.group].prop(settings.transfer, kind.setting)
+        columns["Object"].active = settings.result_mode == "NEW"
+
+
 class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
     """What is wrong with the mesh."""
 
@@ -278,6 +299,7 @@ CLASSES = (
     VIEW3D_PT_hybrid_quad_guides,
     VIEW3D_PT_hybrid_quad_flow,
     VIEW3D_PT_hybrid_quad_symmetry,
+    VIEW3D_PT_hybrid_quad_transfer,
     VIEW3D_PT_hybrid_quad_check,
     VIEW3D_PT_hybrid_quad_report,
 )

@@ -8,6 +8,7 @@ import bpy
 
 from ..core.options import AXES, MOST_QUADS, RemeshOptions
 from .edge_marks import SOURCES
+from .transfer.kinds import KINDS
 
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
@@ -36,6 +37,15 @@ NUMBERS = {
     name: getattr(RemeshOptions, name, neutral)
     for name, neutral in (("adaptivity", 0.0), ("field_smoothness", 1.0), ("anisotropy", 1.0), ("narrow_quads", 2))
 }
+
+
+class HybridQuadTransferSettings(bpy.types.PropertyGroup):
+    """What a result takes along; lives on every object as ``object.hybrid_quad.transfer``."""
+
+    __annotations__ = {
+        kind.setting: bpy.props.BoolProperty(name=kind.label, description=kind.description, default=True)
+        for kind in KINDS
+    }
 
 
 class HybridQuadSettings(bpy.types.PropertyGroup):
@@ -242,6 +252,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         "is from that",
         default=False,
     )
+    transfer: bpy.props.PointerProperty(
+        type=HybridQuadTransferSettings, name="Transfer", description="What the result takes along"
+    )
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"
     )
@@ -260,4 +273,4 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         return "".join(letter for letter, is_used in zip(AXES, self.symmetry_axes, strict=True) if is_used)
 
 
-CLASSES = (HybridQuadSettings,)
+CLASSES = (HybridQuadTransferSettings, HybridQuadSettings)

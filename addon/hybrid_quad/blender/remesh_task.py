@@ -11,7 +11,6 @@ import bpy
 import numpy as np
 
 from ..core.curve_counts import chains_of_edges
-from ..core.edge_borders import edge_keys
 from ..core.errors import InternalError
 from ..core.guide_values import guides_of_vertices
 from ..core.mesh_arrays import FloatArray, IntArray
@@ -21,6 +20,7 @@ from ..core.strokes import Stroke, guides_from_strokes, strokes_of_segments, str
 from ..core.validation import violations
 from . import edge_marks, guide_lines
 from .mesh_source import MeshSource, read_source
+from .transfer import kinds
 
 if TYPE_CHECKING:
     from .properties import HybridQuadSettings
@@ -147,7 +147,7 @@ def prepare_task(
         memory_limit=memory_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
-    source = read_source(obj, depsgraph, along_axes=bool(options.symmetry))
+    source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=kinds.asked_by(settings))
     return RemeshTask(
         source,
         options,
@@ -182,31 +182,3 @@ def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Dep
         kind = settings.guide_annotations_kind.lower()
         strokes += [Stroke(from_world(line), settings.guide_annotations_strength, kind) for line in lines]
     return tuple(stroke for stroke in strokes if stroke.strength > 0 or stroke.kind != "direction")
-
-
-def marks_of_result(task: RemeshTask, result: RemeshResult) -> tuple[IntArray, edge_marks.EdgeValues]:
-    """Result edges inside the surface that follow a feature, and what the feature that they follow carries."""
-    edges = _inner_edges(result.feature_edges, result.quads, len(result.vertices))
-    source = task.source
-    marks = source.marks & np.uint16(task.feature_marks)
-    if task.options.sharp_angle is not None:
-        angle = math.radians(task.options.sharp_angle)
-        marks = edge_marks.add_sharp_by_angle(marks, source.vertices, source.polygons, source.edges, angle)
-    marked = np.flatnonzero(marks)
-    if not len(edges) or not len(marked):
-        return edges[:0], edge_marks.EdgeValues(marks[:0], source.edge_values.crease[:0], source.edge_values.bevel[:0])
-    ends = result.vertices[edges]
-    spacing = 0.25 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean())
-    near = marked[edge_marks.nearest_edges(ends.mean(axis=1), source.vertices, source.edges[marked], spacing)]
-    return edges, edge_marks.EdgeValues(marks[near], source.edge_values.crease[near], source.edge_values.bevel[near])
-
-
-def _inner_edges(edges: IntArray, quads: IntArray, vertex_count: int) -> IntArray:
-    """Those of some edges that two quads share."""
-    if not len(edges):
-        return edges
-    sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
-    keys, uses = np.unique(edge_keys(sides, vertex_count), return_counts=True)
-    wanted = edge_keys(edges, vertex_count)
-    found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    return edges[(keys[found] == wanted) & (uses[found] == 2)]

@@ -8,14 +8,14 @@ from typing import Any
 
 import bpy
 import numpy as np
-from mathutils.bvhtree import BVHTree
 
 from ..core import report
 from ..core.errors import InternalError
 from ..core.remesh import CORNER, RemeshResult
 from . import edge_marks
-from .mesh_source import MeshSource
-from .remesh_task import RemeshTask, marks_of_result
+from .remesh_task import RemeshTask
+from .transfer import layers as transfer_layers
+from .transfer import object_data
 
 
 def place_result(
@@ -25,9 +25,9 @@ def place_result(
 
     Nothing of the scene changes before the whole mesh exists.
     """
-    mesh = build_mesh(obj.data.name, task, result)
+    mesh = build_mesh(obj, task, result)
     in_place = obj.hybrid_quad.result_mode == "REPLACE"
-    target = _replace_mesh(obj, mesh) if in_place else _add_object(context, obj, mesh)
+    target = _replace_mesh(obj, mesh, task) if in_place else _add_object(context, obj, mesh, task)
     for each in {obj, target}:
         each.hybrid_quad.last_report = report.as_text(result.report)
     return target
@@ -42,25 +42,31 @@ def read_report(obj: bpy.types.Object) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def build_mesh(name: str, task: RemeshTask, result: RemeshResult) -> bpy.types.Mesh:
-    """A new mesh with the result's quads, in object space, with materials, shading and marks of the source.
+def build_mesh(source: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> bpy.types.Mesh:
+    """A new mesh with the result's quads, in object space, and with what it takes along of the source.
 
     Raises
     ------
     InternalError
         If Blender finds the mesh invalid.
     """
-    mesh = bpy.data.meshes.new(name)
+    layers = task.source.layers
+    assert layers is not None
+    mesh = object_data.empty_mesh_like(source, layers, len(result.vertices))
+    # Vertex groups are reached through an object only.
+    holder = bpy.data.objects.new(mesh.name, mesh)
     try:
-        _fill(mesh, task, result)
+        _fill(holder, task, result)
     except BaseException:
+        bpy.data.objects.remove(holder)
         bpy.data.meshes.remove(mesh)
         raise
+    bpy.data.objects.remove(holder)
     return mesh
 
 
-def _fill(mesh: bpy.types.Mesh, task: RemeshTask, result: RemeshResult) -> None:
-    source = task.source
+def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None:
+    mesh, source = holder.data, task.source
     quads = result.quads[:, ::-1] if source.is_mirrored else result.quads
     points = source.to_object_space(result.vertices)
     mesh.vertices.add(len(points))
@@ -72,46 +78,32 @@ def _fill(mesh: bpy.types.Mesh, task: RemeshTask, result: RemeshResult) -> None:
     if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # before Blender 3.6
         mesh.polygons.foreach_set("loop_total", np.full(len(quads), 4, np.int32))
     mesh.update(calc_edges=True)
-    for material in source.materials:
-        mesh.materials.append(material)
-    nearest = _nearest_source_faces(source, result)
-    mesh.polygons.foreach_set("material_index", source.face_materials[nearest])
-    mesh.polygons.foreach_set("use_smooth", source.face_smooth[nearest])
-    edge_marks.write(mesh, *marks_of_result(task, result))
+    if "materials" in source.layers.kinds:
+        for material in source.materials:
+            mesh.materials.append(material)
+    if hasattr(mesh, "use_auto_smooth"):
+        # Before Blender 4.1 sharp edges show only with this; 180 degrees: only marked edges are sharp.
+        mesh.use_auto_smooth = bool(source.layers.faces.is_smooth.any())
+        mesh.auto_smooth_angle = math.pi
+    transfer_layers.write(holder, task, result)
     if task.options.fit_limit_surface:
         edge_marks.crease(mesh, result.feature_edges, np.flatnonzero(result.vertex_kinds == CORNER))
-    if hasattr(mesh, "use_auto_smooth") and source.face_smooth.any():
-        # Before Blender 4.1 sharp edges show only with this; 180 degrees: only marked edges are sharp.
-        mesh.use_auto_smooth = True
-        mesh.auto_smooth_angle = math.pi
     if mesh.validate(clean_customdata=False):
         raise InternalError("Blender found the resulting mesh invalid", "validation")
     mesh.update()
 
 
-def _nearest_source_faces(source: MeshSource, result: RemeshResult) -> np.ndarray:
-    """For every quad the source polygon nearest to its middle; the first one where that makes no difference."""
-    if len(np.unique(source.face_materials)) == 1 and len(np.unique(source.face_smooth)) == 1:
-        return np.zeros(len(result.quads), np.int64)
-    corners = source.polygons.vertices.tolist()
-    ends = np.cumsum(source.polygons.sizes).tolist()
-    polygons = [corners[end - size : end] for end, size in zip(ends, source.polygons.sizes.tolist(), strict=True)]
-    tree = BVHTree.FromPolygons(source.vertices.tolist(), polygons)
-    middles = result.vertices[result.quads].mean(axis=1)
-    found = (tree.find_nearest(middle)[2] for middle in middles.tolist())
-    return np.fromiter((0 if index is None else index for index in found), np.int64, len(middles))
-
-
-def _add_object(context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Object:
-    # A copy keeps transform, parent, constraints, materials and settings; what belongs to the old mesh goes.
+def _add_object(
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, task: RemeshTask
+) -> bpy.types.Object:
+    layers = task.source.layers
     result = source.copy()
     result.name = f"{source.name} Quads"
     result.data = mesh
-    result.modifiers.clear()
-    result.vertex_groups.clear()
     mesh.name = result.name
-    for collection in source.users_collection or (context.scene.collection,):
+    for collection in object_data.collections_for(context, source, layers):
         collection.objects.link(result)
+    object_data.take_along(result, source, layers)
     space = context.space_data
     if space is not None and space.type == "VIEW_3D" and space.local_view:
         result.local_view_set(space, True)
@@ -127,10 +119,9 @@ def _add_object(context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.
     return result
 
 
-def _replace_mesh(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Object:
+def _replace_mesh(obj: bpy.types.Object, mesh: bpy.types.Mesh, task: RemeshTask) -> bpy.types.Object:
     old = obj.data
-    for modifier in [modifier for modifier in obj.modifiers if modifier.show_viewport]:
-        obj.modifiers.remove(modifier)  # it is part of the result
+    object_data.keep_modifiers(obj, task.source.layers)
     obj.data = mesh
     if old.users == 0 and old.library is None:
         name = old.name

@@ -75,6 +75,15 @@ class EdgeSides:
         return result
 
 
+def uses_of_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> npt.NDArray[np.int64]:
+    """(k,) how many sides of polygons lie on each of some vertex pairs."""
+    sides = np.stack([polygons.vertices, polygons.vertices[following_corners(polygons)]], axis=1)
+    keys = np.sort(edge_keys(sides, vertex_count))
+    wanted = edge_keys(edges, vertex_count)
+    uses: npt.NDArray[np.int64] = np.searchsorted(keys, wanted, "right") - np.searchsorted(keys, wanted, "left")
+    return uses
+
+
 def following_corners(polygons: Polygons) -> Any:
     """(C,) The corner after each, around its polygon."""
     following = np.arange(1, len(polygons.vertices) + 1)

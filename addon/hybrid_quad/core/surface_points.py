@@ -119,7 +119,7 @@ class _BoxTree:
         """For pairs of a point and a box: the nearest place, its squared distance, and its triangle."""
         at = (_LEAF * box[:, None] + np.arange(_LEAF)).ravel()
         own = np.repeat(points[which], _LEAF, axis=0)
-        places = _nearest_in_triangles(own, self._corners[at])
+        places = nearest_in_triangles(own, self._corners[at])
         squared = ((places - own) ** 2).sum(axis=1).reshape(-1, _LEAF)
         chosen = _LEAF * np.arange(len(box)) + squared.argmin(axis=1)
         return places[chosen], squared.min(axis=1), self._triangles[at[chosen]]
@@ -156,7 +156,7 @@ def pairs_within(
         first = np.searchsorted(keys, middle - 1, "left")
         count = np.searchsorted(keys, middle + 1, "right") - first
         ends = np.cumsum(count)
-        for begin, end in _parts(ends, _PAIRS):
+        for begin, end in parts(ends, _PAIRS):
             part = count[begin:end]
             which = np.repeat(at[begin:end], part)
             within = np.arange(len(which)) - np.repeat(np.cumsum(part) - part, part)
@@ -171,7 +171,7 @@ def _cell_keys(cells: npt.NDArray[np.int64], size: npt.NDArray[np.int64]) -> npt
     return keys
 
 
-def _parts(ends: npt.NDArray[np.int64], most: int) -> Iterator[tuple[int, int]]:
+def parts(ends: npt.NDArray[np.int64], most: int) -> Iterator[tuple[int, int]]:
     """Ranges of rows with about `most` items each, `ends` counting the items up to and with each row."""
     begin = 0
     while begin < len(ends):
@@ -181,7 +181,7 @@ def _parts(ends: npt.NDArray[np.int64], most: int) -> Iterator[tuple[int, int]]:
         begin = end
 
 
-def _nearest_in_triangles(p: FloatArray, corners: FloatArray) -> FloatArray:
+def nearest_in_triangles(p: FloatArray, corners: FloatArray) -> FloatArray:
     """(k, 3) the point of each triangle nearest to each point: inside, or on the nearest of three sides."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     sides = [_nearest_on_segment(p, begin, end) for begin, end in ((a, b), (b, c), (c, a))]

@@ -1,0 +1,209 @@
+"""Walks over a triangle mesh that stop at walls, where what its corners carry is cut.
+
+A face that lies across a wall belongs to the side on which its middle is. What its corners beyond the wall get is looked for among the
+triangles that can be reached from the middle without crossing a wall, so that it comes from the same side even where one
+island of a UV map, say, has both sides of the seam.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .mesh_arrays import FloatArray
+from .surface_places import Indices, Places, TriangleMesh, weights_in
+from .surface_points import nearest_in_triangles, parts
+
+BoolArray = npt.NDArray[np.bool_]
+
+# What is looked at together: bounds the memory.
+_FACES = 4000
+_PAIRS = 500_000
+
+
+class CornerPlaces(NamedTuple):
+    """Places for the corners of some faces, all of a face on one side of the walls.
+
+    Attributes
+    ----------
+    places : Places
+        Of all corners, face by face.
+    beyond : (k,) int64
+        Corners that lie beyond a wall; their place is the nearest one on their face's side of it.
+    mirrored : Places
+        For these, the place as far from the wall on the inside as the corner is on the outside.
+    """
+
+    places: Places
+    beyond: Indices
+    mirrored: Places
+
+    def values(self, indices: Indices, values: FloatArray, *, is_extended: bool) -> FloatArray:
+        """As :meth:`Places.values`; with `is_extended`, corners beyond a wall get what goes on linearly from inside."""
+        result = self.places.values(indices, values)
+        if is_extended:
+            result[self.beyond] = 2 * result[self.beyond] - self.mirrored.values(indices, values)
+        return result
+
+
+class SurfaceWalk:
+    """Which triangles of a mesh are neighbours.
+
+    Triangles whose common edge has no other triangle are; so are triangles at the mesh's border that have edges with
+    the same ends, as they are left where a mesh was split.
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self.mesh = mesh
+        begin, end = mesh.vertices.ravel(), np.roll(mesh.vertices, -1, axis=1).ravel()
+        self._opposite, uses = _opposite_sides(begin, end, np.arange(len(begin)))
+        alone = np.flatnonzero(uses == 1)
+        border = np.unique(np.concatenate([begin[alone], end[alone]]))
+        _, spot_of_border = np.unique(mesh.points[border], axis=0, return_inverse=True)
+        spot = np.zeros(len(mesh.points), np.int64)
+        spot[border] = spot_of_border.reshape(-1)
+        welded, _ = _opposite_sides(spot[begin[alone]], spot[end[alone]], alone)
+        against = welded >= 0
+        against[against] = spot[begin[alone[against]]] == spot[end[welded[against]]]
+        self._opposite[alone[against]] = welded[against]
+        self._is_crowded = uses > 2
+        corners = mesh.points[mesh.vertices]
+        self._low, self._high = corners.min(axis=1), corners.max(axis=1)
+
+    def walls(self, values: FloatArray, tolerance: float) -> BoolArray:
+        """(t, 3) sides, from each corner to the next, across which values of corners differ or more than two triangles meet.
+
+        Parameters
+        ----------
+        values : (C, d) float
+            For each of the polygons' corners.
+        """
+        corners, points = self.mesh.corners.ravel(), self.mesh.points
+        vertices = self.mesh.vertices.ravel()
+        side = np.flatnonzero(self._opposite >= 0)
+        other = self._opposite[side]
+        next_side, next_other = _next_side(side), _next_side(other)
+        alike = (points[vertices[side]] == points[vertices[other]]).all(axis=1)
+        at_begin = np.where(alike, other, next_other)
+        at_end = np.where(alike, next_other, other)
+        gap = np.abs(values[corners[side]] - values[corners[at_begin]]).max(axis=1)
+        gap = np.maximum(gap, np.abs(values[corners[next_side]] - values[corners[at_end]]).max(axis=1))
+        result = self._is_crowded.copy()
+        result[side] |= gap > tolerance
+        return result.reshape(-1, 3)
+
+    def wall_edges(self, walls: BoolArray) -> Indices:
+        """(w, 2) vertices at the ends of the walls' sides."""
+        side = np.flatnonzero(walls)
+        vertices = self.mesh.vertices.ravel()
+        return np.stack([vertices[side], vertices[_next_side(side)]], axis=1)
+
+    def corner_places(
+        self, walls: BoolArray, middles: Places, points: FloatArray, unbounded: Places, radii: FloatArray
+    ) -> CornerPlaces:
+        """Places for the corners of faces, on the side of the walls where the faces' middles are.
+
+        Parameters
+        ----------
+        walls : (t, 3) bool
+        middles : Places
+            Of the f faces.
+        points : (f, m, 3) float64
+            Their corners.
+        unbounded : Places
+            Of the f * m corners, whatever the walls.
+        radii : (f,) float64
+            How far from the middles to look.
+        """
+        count, each = points.shape[:2]
+        triangles, weights = unbounded.triangles.copy(), unbounded.weights.copy()
+        centers = middles.values(self.mesh.vertices, self.mesh.points)
+        unbounded_points = unbounded.values(self.mesh.vertices, self.mesh.points)
+        beyond, mirrored_triangles, mirrored_weights = [], [], []
+        for first in range(0, count, _FACES):
+            part = slice(first, first + _FACES)
+            owners, reached = self._reached(walls, middles.triangles[part], centers[part], radii[part])
+            own = np.arange(first * each, min(first + _FACES, count) * each)
+            wanted = (own // each - first) * len(self.mesh.vertices) + triangles[own]
+            own = own[~_is_in(wanted, owners * len(self.mesh.vertices) + reached)]
+            face = own // each - first
+            inside = self._nearest_reached(points.reshape(-1, 3)[own], face, owners, reached)
+            inside_points = inside.values(self.mesh.vertices, self.mesh.points)
+            reflection = 2 * inside_points - unbounded_points[own]
+            mirrored = self._nearest_reached(reflection, face, owners, reached)
+            triangles[own], weights[own] = inside
+            beyond.append(own)
+            mirrored_triangles.append(mirrored.triangles)
+            mirrored_weights.append(mirrored.weights)
+        none = Places(np.zeros(0, np.int64), np.zeros((0, 3)))
+        if not beyond:
+            return CornerPlaces(Places(triangles, weights), none.triangles, none)
+        mirrored = Places(np.concatenate(mirrored_triangles), np.concatenate(mirrored_weights))
+        return CornerPlaces(Places(triangles, weights), np.concatenate(beyond), mirrored)
+
+    def _reached(
+        self, walls: BoolArray, starts: Indices, centers: FloatArray, radii: FloatArray
+    ) -> tuple[Indices, Indices]:
+        """Pairs of a start's number and a triangle that is reached from it, in order."""
+        count = len(self.mesh.vertices)
+        ways = np.where(walls.ravel(), -1, self._opposite).reshape(-1, 3)
+        former, latest = np.zeros(0, np.int64), np.arange(len(starts)) * count + starts
+        found = [latest]
+        while len(latest):
+            owner, triangle = latest // count, latest % count
+            across = ways[triangle]
+            keys = np.unique((owner[:, None] * count + across // 3)[across >= 0])
+            # A walk by steps: what was there before was so in one of the last two.
+            keys = keys[~_is_in(keys, former) & ~_is_in(keys, latest)]
+            owner, triangle = keys // count, keys % count
+            gap = np.maximum(self._low[triangle] - centers[owner], centers[owner] - self._high[triangle])
+            near = (np.maximum(gap, 0) ** 2).sum(axis=1) <= radii[owner] ** 2
+            former, latest = latest, keys[near]
+            found.append(latest)
+        pairs = np.sort(np.concatenate(found))
+        return pairs // count, pairs % count
+
+    def _nearest_reached(self, points: FloatArray, faces: Indices, owners: Indices, reached: Indices) -> Places:
+        """For every point the nearest place in the triangles that its face reached."""
+        triangles, weights = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
+        first, last = np.searchsorted(owners, faces, "left"), np.searchsorted(owners, faces, "right")
+        for begin, end in parts(np.cumsum(last - first), _PAIRS):
+            size = (last - first)[begin:end]
+            starts = np.cumsum(size) - size
+            which = np.repeat(np.arange(begin, end), size)
+            candidates = reached[np.repeat(first[begin:end] - starts, size) + np.arange(len(which))]
+            corners = self.mesh.points[self.mesh.vertices[candidates]]
+            places = nearest_in_triangles(points[which], corners)
+            squared = ((places - points[which]) ** 2).sum(axis=1)
+            chosen = np.lexsort((squared, which))[starts]
+            triangles[begin:end] = candidates[chosen]
+            weights[begin:end] = weights_in(places[chosen], corners[chosen])
+        return Places(triangles, weights)
+
+
+def _opposite_sides(begin: Indices, end: Indices, names: Indices) -> tuple[Indices, Indices]:
+    """For every side with these ends the name of the one other side with the same, or -1; and how many have the same."""
+    pairs = np.sort(np.stack([begin, end], axis=1), axis=1)
+    keys = pairs[:, 0] * (int(pairs.max(initial=0)) + 1) + pairs[:, 1]
+    order = np.argsort(keys, kind="stable")
+    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    uses = counts[inverse.reshape(-1)]
+    paired = order[uses[order] == 2].reshape(-1, 2)
+    opposite = np.full(len(keys), -1, np.int64)
+    opposite[paired[:, 0]], opposite[paired[:, 1]] = names[paired[:, 1]], names[paired[:, 0]]
+    return opposite, uses
+
+
+def _next_side(side: Indices) -> Indices:
+    following: Indices = side - side % 3 + (side + 1) % 3
+    return following
+
+
+def _is_in(values: Indices, ordered: Indices) -> BoolArray:
+    if not len(ordered):
+        return np.zeros(len(values), np.bool_)
+    at = np.minimum(np.searchsorted(ordered, values), len(ordered) - 1)
+    found: BoolArray = ordered[at] == values
+    return found
