@@ -24,7 +24,7 @@ from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import place_result
-from .transfer.kinds import KINDS
+from .transfer.kinds import KINDS as TRANSFER_KINDS
 
 NAME = "hybrid_quad"
 
@@ -150,10 +150,10 @@ def _parser() -> argparse.ArgumentParser:
         type=_symmetry,
         help="mirror along these axes of the object, or along those along which it is symmetric",
     )
-    for kind in KINDS:
+    for kind in TRANSFER_KINDS:
         parser.add_argument(
             f"--{kind.argument}",
-            dest=kind.setting,
+            dest=kind.argument,
             action=argparse.BooleanOptionalAction,
             help=f"take along {kind.label.lower()}, or do not",
         )
@@ -261,9 +261,9 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
     for name in (*(source.setting for source in SOURCES), *_SAME_NAMES):
         if getattr(options, name) is not None:
             setattr(settings, name, getattr(options, name))
-    for kind in KINDS:
-        if getattr(options, kind.setting) is not None:
-            setattr(settings.transfer, kind.setting, getattr(options, kind.setting))
+    for kind in TRANSFER_KINDS:
+        if getattr(options, kind.argument) is not None:
+            setattr(settings.transfer, kind.setting, getattr(options, kind.argument))
     if options.guide_object is not None:
         settings.guide_object = _named(bpy.data.objects, options.guide_object, "object")
     if options.guide_kind is not None:

@@ -103,7 +103,7 @@ def _add_object(
     mesh.name = result.name
     for collection in object_data.collections_for(context, source, layers):
         collection.objects.link(result)
-    object_data.take_along(result, source, layers)
+    object_data.take_along(context, result, layers)
     space = context.space_data
     if space is not None and space.type == "VIEW_3D" and space.local_view:
         result.local_view_set(space, True)

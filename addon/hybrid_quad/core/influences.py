@@ -22,6 +22,6 @@ def with_fewer_influences(weights: FloatArray, most: int) -> FloatArray:
     total = rows.sum(axis=1, keepdims=True)
     np.put_along_axis(rows, np.argsort(-rows, axis=1, kind="stable")[:, most:], 0.0, axis=1)
     left = rows.sum(axis=1, keepdims=True)
-    result = weights.copy()
+    result: FloatArray = weights.copy()
     result[crowded] = rows * np.divide(total, left, out=np.ones_like(total), where=left > 0)
     return result

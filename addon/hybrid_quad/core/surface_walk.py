@@ -90,7 +90,7 @@ class SurfaceWalk:
         at_end = np.where(alike, next_other, other)
         gap = np.abs(values[corners[side]] - values[corners[at_begin]]).max(axis=1)
         gap = np.maximum(gap, np.abs(values[corners[next_side]] - values[corners[at_end]]).max(axis=1))
-        result = self._is_crowded.copy()
+        result: BoolArray = self._is_crowded.copy()
         result[side] |= gap > tolerance
         return result.reshape(-1, 3)
 

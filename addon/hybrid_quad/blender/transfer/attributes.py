@@ -38,8 +38,21 @@ _STORAGES = {
 _COLORS = ("FLOAT_COLOR", "BYTE_COLOR")
 # What Blender itself keeps in attributes, and what other files take along.
 _NOT_OURS = frozenset(
-    "position material_index sharp_face sharp_edge uv_seam crease_edge crease_vert bevel_weight_edge bevel_weight_vert "
-    "freestyle_edge freestyle_face custom_normal hybrid_quad_feature".split()
+    [
+        "position",
+        "material_index",
+        "sharp_face",
+        "sharp_edge",
+        "uv_seam",
+        "crease_edge",
+        "crease_vert",
+        "bevel_weight_edge",
+        "bevel_weight_vert",
+        "freestyle_edge",
+        "freestyle_face",
+        "custom_normal",
+        "hybrid_quad_feature",
+    ]
 )
 _SAME = 1e-6  # difference of values below which an attribute is not cut at an edge
 

@@ -34,20 +34,19 @@ def empty_mesh_like(source: bpy.types.Object, layers: SourceLayers, vertex_count
     return mesh
 
 
-def take_along(result: bpy.types.Object, source: bpy.types.Object, layers: SourceLayers) -> None:
-    """Leaves a copy of a source object, which has its result, only with what is asked for."""
-    kinds, place = layers.kinds, source.matrix_world.copy()
+def take_along(context: bpy.types.Context, result: bpy.types.Object, layers: SourceLayers) -> None:
+    """Leaves a copy of a source object, which has its result, only with what is asked for; it stays where it is seen.
+
+    Except where an action moves it in the space of a parent that it leaves.
+    """
+    kinds = layers.kinds
     keep_modifiers(result, layers)
+    if not {"parent", "constraints"} <= kinds:
+        _set_free(context, result, kinds)
     if "animation" not in kinds:
         result.animation_data_clear()
     if "custom_properties" not in kinds:
         _clear_properties(result)
-    if "parent" not in kinds:
-        result.parent = None
-    if "constraints" not in kinds:
-        result.constraints.clear()
-    if not {"parent", "constraints"} <= kinds:
-        result.matrix_world = place  # it stays where the source is seen
 
 
 def keep_modifiers(obj: bpy.types.Object, layers: SourceLayers) -> None:
@@ -64,6 +63,24 @@ def collections_for(
     """The collections that a new object with the result goes to."""
     own = source.users_collection if "collections" in layers.kinds else (context.collection,)
     return tuple(own) or (context.scene.collection,)
+
+
+def _set_free(context: bpy.types.Context, obj: bpy.types.Object, kinds: frozenset[str]) -> None:
+    """Removes the parent or the constraints of an object, or both."""
+    muted = []
+    if "constraints" in kinds:  # they will act on what is set here
+        muted = [constraint for constraint in obj.constraints if not constraint.mute]
+    for constraint in muted:
+        constraint.mute = True
+    context.view_layer.update()
+    place = obj.matrix_world.copy()
+    if "parent" not in kinds:
+        obj.parent = None
+    if "constraints" not in kinds:
+        obj.constraints.clear()
+    obj.matrix_world = place
+    for constraint in muted:
+        constraint.mute = False
 
 
 def _remove_drivers(obj: bpy.types.Object, path: str) -> None:

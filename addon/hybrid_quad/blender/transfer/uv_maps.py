@@ -46,7 +46,7 @@ def write(mesh: bpy.types.Mesh, maps: tuple[UvMap, ...], correspondence: Corresp
         places = correspondence.corners(walls_of(source, correspondence))
         values = places.values(correspondence.source.corners, source.places, is_extended=True)
         layer = mesh.uv_layers.new(name=source.name, do_init=False)
-        _set_places(layer, values.astype(np.float32))
+        buffers.write(*_items(layer), values.astype(np.float32))
     for source in maps:
         layer = mesh.uv_layers[source.name]
         layer.active_render = layer.active_render or source.is_rendered
@@ -61,16 +61,10 @@ def walls_of(source: UvMap, correspondence: Correspondence) -> BoolArray:
 
 def places_of(layer: Any) -> FloatArray:
     """(C, 2) places of the face corners in a UV layer of a mesh."""
-    if hasattr(layer, "uv"):  # from Blender 3.5 on
-        places = buffers.read(layer.uv, "vector", np.float32, 2)
-    else:
-        places = buffers.read(layer.data, "uv", np.float32, 2)
-    result: FloatArray = places.astype(np.float64)
-    return result
+    items, name = _items(layer)
+    places: FloatArray = buffers.read(items, name, np.float32, 2).astype(np.float64)
+    return places
 
 
-def _set_places(layer: Any, values: Any) -> None:
-    if hasattr(layer, "uv"):
-        buffers.write(layer.uv, "vector", values)
-    else:
-        buffers.write(layer.data, "uv", values)
+def _items(layer: Any) -> tuple[Any, str]:
+    return (layer.uv, "vector") if hasattr(layer, "uv") else (layer.data, "uv")  # before Blender 3.5

@@ -19,6 +19,10 @@ class VertexGroups(NamedTuple):
     Attributes
     ----------
     names : tuple of str
+    active : int
+        Which is active, or -1.
+    locked : (g,) bool
+        Whose weights are locked.
     deforming : (g,) bool
         Which are named like a bone that deforms.
     vertices, groups : (k,) int64
@@ -28,6 +32,8 @@ class VertexGroups(NamedTuple):
     """
 
     names: tuple[str, ...]
+    active: int
+    locked: npt.NDArray[np.bool_]
     deforming: npt.NDArray[np.bool_]
     vertices: Indices
     groups: Indices
@@ -47,6 +53,8 @@ def read(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> VertexGroups:
     known = (group >= 0) & (group < len(names))
     return VertexGroups(
         names,
+        obj.vertex_groups.active_index if names else -1,
+        np.array([group.lock_weight for group in obj.vertex_groups], np.bool_),
         np.array([name in bones for name in names], np.bool_),
         owner[known],
         group[known],
@@ -61,14 +69,18 @@ def write(obj: bpy.types.Object, source: VertexGroups, correspondence: Correspon
     A vertex is in a group where a vertex of the triangle it lies in is, as far as that has a share in it.
     """
     weights, is_member = weights_on_result(source, correspondence)
+    obj.vertex_groups.clear()
     for group, name in enumerate(source.names):
-        target = obj.vertex_groups.get(name) or obj.vertex_groups.new(name=name)
+        target = obj.vertex_groups.new(name=name)
+        target.lock_weight = bool(source.locked[group])
         members = np.flatnonzero(is_member[:, group])
         values, inverse = np.unique(weights[members, group].astype(np.float32), return_inverse=True)
         order = np.argsort(inverse.reshape(-1), kind="stable")
         ends = np.cumsum(np.bincount(inverse.reshape(-1), minlength=len(values)))
         for value, some in zip(values.tolist(), np.split(members[order], ends[:-1]), strict=False):
             target.add(some.tolist(), value, "REPLACE")
+    if source.active >= 0:
+        obj.vertex_groups.active_index = source.active
 
 
 def weights_on_result(

@@ -10,7 +10,6 @@ from mathutils.kdtree import KDTree
 
 from .. import edge_marks
 from ..edge_marks import VertexStore
-from . import buffers
 from .correspondence import Correspondence
 
 _STORES = (("creases", edge_marks.VERTEX_CREASE), ("bevel_weights", edge_marks.VERTEX_BEVEL))

@@ -1,0 +1,128 @@
+"""Corners of faces that lie across a cut belong to one side of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hybrid_quad.core.corner_fans import fans_of_corners
+from hybrid_quad.core.influences import with_fewer_influences
+from hybrid_quad.core.mesh_arrays import Polygons
+from hybrid_quad.core.surface_places import Places, TriangleMesh, places_in, weights_in
+from hybrid_quad.core.surface_points import nearest_on_surface
+from hybrid_quad.core.surface_walk import SurfaceWalk
+
+AROUND, ALONG = 24, 12
+
+
+def tube(is_split: bool) -> tuple[TriangleMesh, np.ndarray]:
+    """A tube around z, and a map of it (angle and height at every corner) that is cut once, at angle 0.
+
+    With `is_split` the cut has vertices of its own on either side, as in models that come from games.
+    """
+    columns = AROUND + 1 if is_split else AROUND
+    angle = 2 * np.pi * np.arange(columns) / AROUND
+    angle[AROUND:] = 0.0  # exactly where the first column is
+    height = np.linspace(0, 3, ALONG + 1)
+    points = np.array([(np.cos(a), np.sin(a), z) for z in height for a in angle])
+    triangles, corners = [], []
+    for row in range(ALONG):
+        for col in range(AROUND):
+            a, b = row * columns + col, row * columns + (col + 1) % columns
+            quad = (a, b, b + columns, a + columns)
+            places = [(col, row), (col + 1, row), (col + 1, row + 1), (col, row + 1)]
+            for pick in ((0, 1, 2), (0, 2, 3)):
+                triangles.append([quad[i] for i in pick])
+                corners += [places[i] for i in pick]
+    count = len(triangles)
+    mesh = TriangleMesh(points, np.array(triangles), np.arange(3 * count).reshape(-1, 3), np.arange(count))
+    return mesh, np.array(corners, float) * (2 * np.pi / AROUND, 3 / ALONG)
+
+
+def places_on(mesh: TriangleMesh, points: np.ndarray) -> Places:
+    return places_in(points, mesh, nearest_on_surface(points, mesh.points, mesh.vertices).triangles)
+
+
+def on_tube(angle, height) -> np.ndarray:
+    return np.stack([np.cos(angle), np.sin(angle), np.broadcast_to(height, np.shape(angle))], axis=-1)
+
+
+@pytest.mark.parametrize("is_split", [False, True])
+def test_a_face_across_the_only_seam_of_an_island_stays_on_one_side(is_split):
+    mesh, places = tube(is_split)
+    walk = SurfaceWalk(mesh)
+    walls = walk.walls(places, 1e-6)
+    assert walls.sum() == 2 * ALONG
+    for middle in (0.1, -0.1):
+        angle = middle + np.array([-0.25, 0.25, 0.25, -0.25])
+        points = on_tube(angle, np.array([1.0, 1.0, 1.5, 1.5]))
+        corners = walk.corner_places(
+            walls, places_on(mesh, on_tube([middle], 1.25)), points[None], places_on(mesh, points), np.array([0.6])
+        )
+        values = corners.values(mesh.corners, places, is_extended=True)
+        expected = angle if middle > 0 else angle + 2 * np.pi
+        assert np.allclose(values[:, 0], expected, atol=0.02)
+        assert np.allclose(values[:, 1], [1.0, 1.0, 1.5, 1.5], atol=1e-6)
+        inside = corners.values(mesh.corners, places, is_extended=False)
+        assert inside[:, 0].min() > -1e-9 and inside[:, 0].max() < 2 * np.pi + 1e-9
+
+
+def test_without_walls_nothing_lies_beyond_any():
+    mesh, _ = tube(False)
+    walk = SurfaceWalk(mesh)
+    walls = walk.walls(mesh.points[mesh.vertices].reshape(-1, 3), 1e-6)
+    assert not walls.any()
+    points = on_tube(np.array([-0.25, 0.25, 0.25, -0.25]), np.array([1.0, 1.0, 1.5, 1.5]))
+    unbounded = places_on(mesh, points)
+    corners = walk.corner_places(walls, places_on(mesh, on_tube([0.0], 1.25)), points[None], unbounded, np.array([0.6]))
+    assert len(corners.beyond) == 0
+    assert np.array_equal(corners.places.weights, unbounded.weights)
+
+
+def test_sheets_with_the_same_vertices_twice_are_no_neighbours():
+    square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    points = np.concatenate([square, square])
+    triangles = np.array([(0, 1, 2), (0, 2, 3), (6, 5, 4), (7, 6, 4)])
+    mesh = TriangleMesh(points, triangles, np.arange(12).reshape(4, 3), np.arange(4))
+    # Every rim has two triangles of opposite orientation, which is how a closed pillow looks: these are neighbours.
+    of_sheet = np.repeat([0.0, 1.0], 6)[:, None]
+    assert SurfaceWalk(mesh).walls(of_sheet, 1e-6).sum() == 8
+
+
+def test_weights_give_the_point_back():
+    rng = np.random.default_rng(0)
+    corners = rng.normal(size=(200, 3, 3))
+    weights = rng.dirichlet((1, 1, 1), 200)
+    weights[:50, 0] = 0
+    weights /= weights.sum(axis=1, keepdims=True)
+    points = np.einsum("ki,kid->kd", weights, corners)
+    assert np.allclose(weights_in(points, corners), weights, atol=1e-9)
+    # A triangle that is a line, and one that is a point.
+    corners[0] = [(0, 0, 0), (4, 0, 0), (1, 0, 0)]
+    corners[1] = 1.0
+    found = weights_in(np.array([(3.0, 0, 0), (1, 1, 1)]), corners[:2])
+    assert np.allclose(np.einsum("ki,kid->kd", found, corners[:2]), [(3, 0, 0), (1, 1, 1)])
+    assert np.allclose(found.sum(axis=1), 1)
+
+
+def test_fans_end_at_cuts():
+    # Four quads around a vertex.
+    quads = [(0, 1, 4, 3), (1, 2, 5, 4), (3, 4, 7, 6), (4, 5, 8, 7)]
+    polygons = Polygons(np.full(4, 4, np.int32), np.array(quads, np.int32).ravel())
+    corners = np.flatnonzero(polygons.vertices == 4)
+    cuts = np.zeros(16, bool)
+    assert len(np.unique(fans_of_corners(polygons, cuts)[corners])) == 1
+    following = np.arange(16) - np.arange(16) % 4 + (np.arange(16) + 1) % 4
+    ends = np.sort(np.stack([polygons.vertices, polygons.vertices[following]], axis=1), axis=1)
+    cuts = ((ends == (1, 4)) | (ends == (4, 7))).all(axis=1)
+    fans = fans_of_corners(polygons, cuts)[corners]
+    assert fans[0] == fans[2] != fans[1] == fans[3]
+
+
+def test_fewer_influences_keep_the_sum_and_the_largest():
+    weights = np.random.default_rng(1).dirichlet(np.ones(6), 100)
+    fewer = with_fewer_influences(weights, 3)
+    assert ((fewer > 0).sum(axis=1) == 3).all()
+    assert np.allclose(fewer.sum(axis=1), weights.sum(axis=1))
+    assert (fewer.argmax(axis=1) == weights.argmax(axis=1)).all()
+    assert np.array_equal(with_fewer_influences(weights, 6), weights)
