@@ -25,7 +25,13 @@ def scene_state():
 def _scene_state():
     bpy.context.view_layer.update()
     objects = {
-        obj.name: (obj.data.name, obj.hide_get(), obj.hide_render, obj.select_get(), [m.name for m in obj.modifiers])
+        obj.name: (
+            obj.data and obj.data.name,
+            obj.hide_get(),
+            obj.hide_render,
+            obj.select_get(),
+            [m.name for m in obj.modifiers],
+        )
         for obj in bpy.data.objects
     }
     meshes = {

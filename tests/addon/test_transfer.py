@@ -135,7 +135,7 @@ def has_shape_keys(source, result):
     assert np.abs(shapes["Lift"] - points - np.outer(linear(points), (0, 0, 1))).max() < ROUNDING
     assert np.abs(shapes["More"] - shapes["Lift"] - (0.25, 0, 0)).max() < ROUNDING
     lift, more = keys.key_blocks["Lift"], keys.key_blocks["More"]
-    assert (lift.slider_max, lift.value, lift.mute) == (2.0, 0.5, False)
+    assert lift.slider_max == 2.0 and lift.value == pytest.approx(0.5) and not lift.mute
     assert more.relative_key == lift and more.vertex_group == "Up" and more.mute
     assert [driver.data_path for driver in keys.animation_data.drivers] == ['key_blocks["Lift"].value']
 

@@ -101,7 +101,8 @@ def _add_attributes(mesh, points, at_corners, right) -> None:
     add("Corner Color", "BYTE_COLOR", "CORNER", np.repeat(np.where(right, 1.0, 0.0), 16).astype(np.float32), "color")
     text = mesh.attributes.new("Face Text", "STRING", "FACE")
     for item, is_right in zip(text.data, right, strict=True):
-        item.value = "right" if is_right else "left"
+        side = "right" if is_right else "left"
+        item.value = side if isinstance(item.value, str) else side.encode()
     names = [layer.name for layer in mesh.color_attributes]
     mesh.color_attributes.active_color_index = names.index("Corner Color")
     mesh.color_attributes.render_color_index = names.index("Point Color")

@@ -130,7 +130,7 @@ def write(mesh: bpy.types.Mesh, attributes: MeshAttributes, correspondence: Corr
                 edges = buffers.read(mesh.edges, "vertices", np.int32, 2)
                 followed = correspondence.followed(edges, correspondence.source.points, attributes.edges)
             values = source.values[followed]
-            values[followed < 0] = b"" if source.data_type == "STRING" else 0
+            values[followed < 0] = type(values.flat[0])()
         else:
             values = _values_on_result(source, correspondence)
         target = mesh.attributes.new(source.name, source.data_type, source.domain)
