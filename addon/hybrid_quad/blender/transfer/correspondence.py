@@ -86,15 +86,15 @@ class Correspondence:
         begin, end = (self.points[edges[:, side]] for side in (0, 1))
         along, length = unit_vectors(end - begin), np.linalg.norm(end - begin, axis=1)
         source_along = unit_vectors(source_points[source_edges[:, 1]] - source_points[source_edges[:, 0]])
-        tree = NearestEdges(source_points, source_edges)
+        owner, edge, gap = NearestEdges(source_points, source_edges).find_all(
+            0.5 * (begin + end), _FOLLOWING_DISTANCE * length
+        )
+        fits = np.abs(np.einsum("ij,ij->i", source_along[edge], along[owner])) > _FOLLOWING_COSINE
+        owner, edge, gap = owner[fits], edge[fits], gap[fits]
+        order = np.lexsort((gap, owner))
+        owners, first = np.unique(owner[order], return_index=True)
         result = np.full(len(edges), -1, np.int64)
-        for index, middle in enumerate(0.5 * (begin + end)):
-            near = tree.find_all(middle, _FOLLOWING_DISTANCE * length[index])
-            if near:
-                gap, edge = np.array([gap for gap, _ in near]), np.array([edge for _, edge in near])
-                gap[np.abs(source_along[edge] @ along[index]) < _FOLLOWING_COSINE] = np.inf
-                if gap.min() < np.inf:
-                    result[index] = edge[gap.argmin()]
+        result[owners] = edge[order][first]
         return result
 
     @cached_property

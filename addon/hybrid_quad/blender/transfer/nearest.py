@@ -75,6 +75,14 @@ class NearestEdges:
         )
         return np.fromiter((-1 if index is None else index for index in found), np.int64, len(points))
 
-    def find_all(self, point: FloatArray, reach: float) -> list[tuple[float, int]]:
-        """Distances and numbers of all edges within `reach` of a point (3,)."""
-        return [(hit[3], hit[2]) for hit in self._tree.find_nearest_range((point - self._center).tolist(), reach)]
+    def find_all(self, points: FloatArray, reach: FloatArray) -> tuple[Indices, Indices, FloatArray]:
+        """All pairs of a point and an edge within its `reach` (k,): numbers of both and their distance."""
+        near = self._tree.find_nearest_range
+        hits = [
+            near(point, distance)
+            for point, distance in zip((points - self._center).tolist(), reach.tolist(), strict=True)
+        ]
+        owners = np.repeat(np.arange(len(points)), [len(some) for some in hits])
+        edges = np.fromiter((hit[2] for some in hits for hit in some), np.int64, len(owners))
+        gaps = np.fromiter((hit[3] for some in hits for hit in some), np.float64, len(owners))
+        return owners, edges, gaps
