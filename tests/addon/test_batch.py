@@ -63,6 +63,19 @@ def blend(tmp_path):
     return path
 
 
+def test_what_comes_along_can_be_chosen(blend, tmp_path):
+    for layer in ("One", "Two"):
+        bpy.data.meshes["Cube mesh"].uv_layers.new(name=layer)
+    bpy.data.objects["Cube"].vertex_groups.new(name="Group")
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    out = tmp_path / "out.blend"
+    done = _run(blend, "--object", "Cube", "--no-transfer-uv-maps", "--transfer-vertex-groups", "--output", str(out))
+    assert done.returncode == 0, done.stderr
+    bpy.ops.wm.open_mainfile(filepath=str(out))
+    result = bpy.data.objects["Cube Quads"]
+    assert len(result.data.uv_layers) == 0 and [group.name for group in result.vertex_groups] == ["Group"]
+
+
 def test_a_file_in_a_file_out(blend, tmp_path):
     out, report = tmp_path / "out.blend", tmp_path / "r.json"
     done = _run(

@@ -109,9 +109,12 @@ def write(obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None
     attributes.write(mesh, layers.attributes, correspondence)
     if layers.groups is not None:
         vertex_groups.write(obj, layers.groups, correspondence)
-    if layers.keys is not None:
+    losses = layers.losses
+    if layers.keys is not None and mesh.shape_keys is not None:
         shape_keys.write(mesh, layers.keys, correspondence)
+    elif layers.keys is not None:
+        losses.append("Shape keys are left behind: the source lost its own during the run")
     if layers.normals is not None:
         custom_normals.write(mesh, layers.normals, correspondence)
-    result.report["warnings"].extend(layers.losses)
+    result.report["warnings"].extend(losses)
     result.report["transfer"] = {"vertices_against": correspondence.vertices_against}

@@ -15,7 +15,7 @@ def empty_mesh_like(source: bpy.types.Object, layers: SourceLayers, vertex_count
     mesh = source.data.copy()
     holder = bpy.data.objects.new(mesh.name, mesh)
     try:
-        if layers.keys is None:
+        if layers.keys is None or mesh.shape_keys is None:
             if mesh.shape_keys:
                 holder.shape_key_clear()
             mesh.clear_geometry()

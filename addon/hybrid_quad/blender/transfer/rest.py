@@ -43,7 +43,8 @@ def at_rest(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kinds: frozen
     applied = tuple(modifier.name for modifier in visible if modifier.name not in alive)
     acting = [name for name in alive if obj.modifiers[name].type not in _PASSIVE]
     has_keys = "shape_keys" in kinds and obj.data.shape_keys is not None
-    is_rigged = obj.parent_type in _RIGGING and {"parent", "vertex_groups"} <= kinds
+    needed = {"ARMATURE": {"parent", "vertex_groups"}, "LATTICE": {"parent"}}.get(obj.parent_type)
+    is_rigged = needed is not None and needed <= kinds
     if not (acting or has_keys or is_rigged):
         yield Rest(obj, applied, False)
         return
@@ -69,9 +70,10 @@ def at_rest(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kinds: frozen
 def _stays_alive(modifier: Any, kinds: frozenset[str]) -> bool:
     if "modifiers" not in kinds or modifier.type not in _RIGGING | _PASSIVE:
         return False
-    # Without its groups a rig would move nothing, or all alike.
-    by_groups = modifier.type in _RIGGING and not getattr(modifier, "use_bone_envelopes", False)
-    return "vertex_groups" in kinds or not by_groups
+    # Without its groups a rig would move nothing, or all of the mesh.
+    if modifier.type == "ARMATURE":
+        return "vertex_groups" in kinds or not modifier.use_vertex_groups
+    return "vertex_groups" in kinds or not getattr(modifier, "vertex_group", "")
 
 
 def _show_reference_key(obj: bpy.types.Object) -> None:
