@@ -197,7 +197,7 @@ def count_rows(paths: list[Path], counts: list[int], out: Path, seconds: float) 
             run = Run(path.stem, path, count, setting)
             outcome = run_and_judge(run, out, Limits(seconds=seconds), judge=None, keep_meshes=False)
             tolerance = FEW_TOLERANCE if count < FEW else TOLERANCE
-            is_impossible = not outcome.failed and outcome.report["fewest_quads"] > (1 + tolerance) * count
+            is_impossible = outcome.report.get("fewest_quads", 0) > (1 + tolerance) * count
             possible[count, setting] -= is_impossible
             cells.append(f"({_count_cell(outcome)})" if is_impossible else _count_cell(outcome))
             longest[count, setting] = max(longest[count, setting], outcome.cpu_seconds)
