@@ -77,6 +77,11 @@ class WorkerRun:
         return not self._thread.is_alive()
 
     @property
+    def has_result(self) -> bool:
+        """Whether the run has ended well."""
+        return self.is_finished and self._stopped is None and self._error is None
+
+    @property
     def silent_seconds(self) -> float:
         """How long ago the worker last told how far it is."""
         return time.monotonic() - self._news
@@ -151,7 +156,10 @@ class WorkerRun:
             if last is None:
                 raise WorkerDied(self.stage, _status_of(process), _end_of_log(folder))
             if last["event"] == "error":
-                raise error_of(last)
+                error = error_of(last)
+                if isinstance(error, MemoryError):
+                    raise MemoryError(f"during {self._stage_in_words}") from error
+                raise error
             return RemeshResult(**load_fields(folder / RESULT))
         finally:
             if timer is not None:
