@@ -58,11 +58,11 @@ class BackgroundRun:
 
     @property
     def status(self) -> str:
-        """For example ``"periodic field, 42 %"``."""
+        """What it does now, for example ``"Periodic field"``."""
         if self.is_finished:
-            return "done, waiting for Object Mode"
-        text = f"{self.worker.stage.replace('_', ' ')}, {100 * self.worker.fraction:.0f} %"
+            return "Done: go to Object Mode to get it"
         silence = self.worker.silent_seconds
+        text = self.worker.stage.replace("_", " ").capitalize()
         return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
 
     def cancel(self) -> None:

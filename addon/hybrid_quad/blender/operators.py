@@ -14,7 +14,6 @@ from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
-from .background_run import BackgroundRun
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay, redraw_sidebars

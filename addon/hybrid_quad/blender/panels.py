@@ -279,11 +279,16 @@ def _number(value: float | None) -> str:
 def _draw_run(layout: Any, context: bpy.types.Context, run: background_run.BackgroundRun) -> None:
     """What the background run is about, how far it is, and the button that ends it."""
     box = layout.box().column()
+    box.use_property_split = False
     box.label(text=run.source.name, icon="MOD_REMESH")
+    box.label(text=run.status)
+    if run.is_finished:
+        box.operator(OBJECT_OT_hybrid_quad_cancel.bl_idname, text="Drop the Result", icon="X")
+        return
     if hasattr(layout, "progress"):  # from Blender 4.0 on
-        box.progress(factor=run.fraction, text=run.status)
+        box.progress(factor=run.fraction, text=f"{100 * run.fraction:.0f} %")
     else:
-        box.prop(context.window_manager, "hybrid_quad_progress", text=run.status, slider=True)
+        box.prop(context.window_manager, "hybrid_quad_progress", text="", slider=True)
     box.operator(OBJECT_OT_hybrid_quad_cancel.bl_idname, icon="X")
 
 

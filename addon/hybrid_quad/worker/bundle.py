@@ -28,7 +28,8 @@ def save_bundle(path: Path, arrays: Mapping[str, npt.NDArray[Any]], values: Mapp
         if name == _VALUES or array.dtype.hasobject:
             raise TypeError(f"{name} cannot be handed over: {array.dtype}")
     text = json.dumps(values, default=_plain)
-    np.savez(path, **{_VALUES: np.frombuffer(text.encode(), np.uint8)}, **arrays)
+    members: dict[str, Any] = {_VALUES: np.frombuffer(text.encode(), np.uint8), **arrays}
+    np.savez(path, **members)
 
 
 def load_bundle(path: Path) -> tuple[Arrays, dict[str, Any]]:

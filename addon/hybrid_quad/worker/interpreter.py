@@ -30,7 +30,16 @@ def worker_command(host: str = "", candidates: Sequence[Path] | None = None) -> 
             # Isolated: neither the environment nor the user's own packages can break it.
             return [str(path), "-I", str(CHILD)]
     if host:
-        return [host, "--background", "--factory-startup", "-noaudio", "--python-exit-code", "1", "--python", str(CHILD)]
+        return [
+            host,
+            "--background",
+            "--factory-startup",
+            "-noaudio",
+            "--python-exit-code",
+            "1",
+            "--python",
+            str(CHILD),
+        ]
     raise FileNotFoundError("no Python program was found that could do the work in a process of its own")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import subprocess
@@ -92,7 +93,10 @@ class WorkerRun:
         return None if self._process is None else self._process.pid
 
     def cancel(self) -> None:
-        """Kills the worker, whatever it does; :meth:`result` then raises Cancelled."""
+        """Kills the worker, whatever it does, and does not wait; :meth:`result` then raises Cancelled.
+
+        A run that has ended before stays as it is.
+        """
         self._stop(Cancelled(f"cancelled during {self._stage_in_words}"))
 
     def wait(self, timeout: float | None = None) -> bool:
@@ -128,7 +132,7 @@ class WorkerRun:
 
     def _stop(self, reason: Cancelled) -> None:
         with self._lock:
-            if self._stopped is None:
+            if self._stopped is None and self._result is None and self._error is None:
                 self._stopped = reason
             if self._process is not None:
                 self._process.kill()
@@ -204,7 +208,9 @@ class WorkerRun:
         return None
 
     def _give_up(self, limit: float) -> None:
-        text = f"the time limit of {limit:g} s is over, and the run did not answer any more during {self._stage_in_words}"
+        text = (
+            f"the time limit of {limit:g} s is over, and the run did not answer any more during {self._stage_in_words}"
+        )
         self._stop(Cancelled(text, "time_limit"))
 
 
@@ -222,10 +228,8 @@ def _dispose(process: subprocess.Popen[bytes]) -> None:
     process.kill()
     for pipe in (process.stdin, process.stdout):
         if pipe is not None:
-            try:
+            with contextlib.suppress(OSError):  # what could not be written any more
                 pipe.close()
-            except OSError:  # what could not be written any more
-                pass
     process.wait()
 
 

@@ -73,17 +73,17 @@ class RemeshRequest:
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does; ``InternalError`` also where the result is no valid quad mesh.
         """
-        wishes = {"guides": self.directions(), "density": self.density}
         result = remesh_with_options(
             self.vertices,
             self.polygons,
             self.options,
             sharp_edges=self.sharp_edges,
             curve_counts=self.curve_counts,
+            guides=self.directions(),
             strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
+            density=self.density,
             progress=progress,
             cancel=cancel,
-            **{name: wish for name, wish in wishes.items() if wish is not None},
         )
         problems = violations(result.vertices, result.quads)
         if problems:
