@@ -195,6 +195,11 @@ class Stage:
         obj = self._add_mesh(points, [], all_faces, colour, roughness=0.35)
         obj.data.polygons.foreach_set("use_smooth", [True] * len(obj.data.polygons))
 
+    def add_object(self, obj: bpy.types.Object) -> None:
+        """An object of one's own, with its materials."""
+        self._scene.collection.objects.link(obj)
+        self._things.append(obj)
+
     def render(self, path: Path) -> Path:
         started = time.monotonic()
         self._scene.render.filepath = str(path)

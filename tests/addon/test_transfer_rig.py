@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from mathutils.bvhtree import BVHTree
 
+from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.blender.result_mesh import read_report
 from scenes import activate, add_cube, add_object, assert_sound, faces_of, points_of, remesh
 from transfer_scene import add_everything, read
 
@@ -206,8 +208,6 @@ def test_a_key_under_which_modifiers_make_other_vertices_is_reported():
     weld.use_bisect_axis = (True, False, False)  # which cuts through other edges once the key has moved them
     for point in source.data.shape_keys.key_blocks["Wide"].data:
         point.co.x += 0.7
-    from hybrid_quad.blender.result_mesh import read_report
-
     result = remesh()
     assert any("Wide" in warning for warning in read_report(result)["warnings"])
     assert not any("Deep" in warning for warning in read_report(result)["warnings"])
@@ -232,11 +232,34 @@ def test_the_source_is_left_as_it_was(scene_state):
         [(key.name, key.value, key.mute, key.vertex_group) for key in source.data.shape_keys.key_blocks],
     )
     source.hybrid_quad.quads = 150
-    from hybrid_quad.blender.remesh_task import prepare_task
-
     prepare_task(source, bpy.context.evaluated_depsgraph_get())
     assert (
         scene_state(),
         [(key.name, key.value, key.mute, key.vertex_group) for key in source.data.shape_keys.key_blocks],
     ) == before
     assert len(bpy.data.shape_keys) == 1 and not source.show_only_shape_key
+
+
+def test_guides_drawn_on_the_pose_guide_the_rest():
+    source = add_limb()
+    source.location = (1, 2, 3)
+    source.shape_key_add(name="Basis")
+    key = source.shape_key_add(name="Aside")
+    for point in key.data:
+        point.co.x += point.co.z  # sheared: the end moves by its height
+    key.value = 1.0
+    line = points_of(source)[24:1024:24] + np.array((0.05, 0, 0))  # along the side, a little off it
+    curve = bpy.data.curves.new("Guide", "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(line) - 1)
+    seen = line + np.outer(line[:, 2], (1, 0, 0)) + (1, 2, 3)
+    spline.points.foreach_set("co", np.column_stack([seen, np.ones(len(line))]).ravel())
+    guide = bpy.data.objects.new("Guide", curve)
+    bpy.context.scene.collection.objects.link(guide)
+    source.hybrid_quad.guide_object = guide
+    bpy.context.view_layer.update()
+    task = prepare_task(source, bpy.context.evaluated_depsgraph_get())
+    points = np.concatenate([stroke.points for stroke in task.strokes])
+    assert len(points) == len(line)
+    assert np.abs(points - line).max() < 0.05

@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from ..core.errors import InputError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
+from ..core.surface_places import weights_in
+from ..core.surface_points import fan_triangles, nearest_on_surface
 from . import edge_marks, guide_attributes
 from .edge_marks import EdgeValues
 from .transfer import layers
@@ -48,6 +50,8 @@ class MeshSource:
         The material (or None) of each slot.
     layers : SourceLayers or None
         What the result takes along, where the source was read for a result.
+    seen : (n, 3) float64 or None
+        Where the viewport shows the vertices, if what stays alive on the result moves them.
     """
 
     linear: FloatArray
@@ -61,6 +65,7 @@ class MeshSource:
     counts: IntArray | None
     materials: list[Any]
     layers: SourceLayers | None = None
+    seen: FloatArray | None = None
 
     @property
     def marks(self) -> edge_marks.MarkArray:
@@ -71,6 +76,17 @@ class MeshSource:
     def is_mirrored(self) -> bool:
         """Whether the way to the run's space turns the surface inside out."""
         return bool(np.linalg.det(self.linear) < 0)
+
+    def from_seen(self, points: FloatArray) -> FloatArray:
+        """Points near the surface as the viewport shows it, moved along with it to where it is remeshed."""
+        if self.seen is None or not len(points):
+            return points
+        triangles = fan_triangles(self.polygons)
+        nearest = nearest_on_surface(points, self.seen, triangles)
+        own = triangles[nearest.triangles]
+        moved = np.einsum("ki,kid->kd", weights_in(nearest.positions, self.seen[own]), self.vertices[own])
+        result: FloatArray = moved + points - nearest.positions
+        return result
 
     def to_object_space(self, points: FloatArray) -> FloatArray:
         """Points of the run's space, in the object's own."""
@@ -122,14 +138,29 @@ def read_source(
             if kinds is None:
                 return source
             own = layers.read(rest, mesh, linear, kinds)
-            points = _read(mesh.vertices, "co", np.float32, 3).reshape(-1, 3)
+            points = _points(mesh)
         finally:
             shown.to_mesh_clear()
-        return replace(source, layers=layers.with_keys(own, rest, depsgraph, points))
+        seen = None if rest.shown == obj else _seen(obj, depsgraph) @ linear.T
+        if seen is not None and len(seen) != len(points):
+            seen = None  # the modifiers make other vertices: nothing says which is which
+        return replace(source, layers=layers.with_keys(own, rest, depsgraph, points), seen=seen)
+
+
+def _seen(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
+    evaluated = obj.evaluated_get(depsgraph)
+    try:
+        return _points(evaluated.to_mesh())
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def _points(mesh: bpy.types.Mesh) -> FloatArray:
+    points: FloatArray = _read(mesh.vertices, "co", np.float32, 3).astype(np.float64).reshape(-1, 3)
+    return points
 
 
 def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
-    points = _read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     starts = _read(mesh.polygons, "loop_start", np.int32)
     sizes = _read(mesh.polygons, "loop_total", np.int32)
     corners = _read(mesh.loops, "vertex_index", np.int32)
@@ -138,7 +169,7 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
     edges = _read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2)
     return MeshSource(
         linear=linear,
-        vertices=points.reshape(-1, 3) @ linear.T,
+        vertices=_points(mesh) @ linear.T,
         polygons=polygons,
         edges=edges,
         edge_values=edge_marks.read(mesh, polygons, edges, order),

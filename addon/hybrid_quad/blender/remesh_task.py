@@ -157,9 +157,10 @@ def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Dep
     origin, linear = np.array(matrix.translation, np.float64), np.array(matrix.to_3x3(), np.float64)
 
     def from_world(line: FloatArray) -> FloatArray:
-        if np.array_equal(linear, source.linear):
-            return line - origin
-        return np.linalg.solve(linear, (line - origin).T).T @ source.linear.T
+        local = line - origin
+        if not np.array_equal(linear, source.linear):
+            local = np.linalg.solve(linear, local.T).T @ source.linear.T
+        return source.from_seen(local)
 
     strokes += [
         Stroke(from_world(line), settings.guide_objects_strength, kind)

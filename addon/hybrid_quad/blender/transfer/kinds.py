@@ -52,16 +52,16 @@ KINDS = (
     Kind("creases", "Edges", "Creases", "Give kept edges and corners their creases for subdivision surfaces"),
     Kind("bevel_weights", "Edges", "Bevel Weights", "Give kept edges and corners their bevel weights"),
     Kind("freestyle_marks", "Edges", "Freestyle Marks", "Mark kept edges, and faces, that are marked for Freestyle"),
-    Kind("vertex_groups", "Deformation", "Vertex Groups", "All vertex groups with their weights"),
+    Kind("vertex_groups", "Deform", "Vertex Groups", "All vertex groups with their weights"),
     Kind(
         "shape_keys",
-        "Deformation",
+        "Deform",
         "Shape Keys",
         "All shape keys with their values and drivers. The shape without any of them is then remeshed",
     ),
     Kind(
         "modifiers",
-        "Deformation",
+        "Deform",
         "Modifiers",
         "Modifiers that are off in viewports, and those that rig the mesh (armature, lattice): its shape without them is "
         "remeshed. Other visible modifiers are applied",
