@@ -6,6 +6,8 @@ import bpy
 import numpy as np
 import pytest
 
+from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.blender.result_mesh import place_result
 from hybrid_quad.blender.transfer.kinds import NAMES
 from scenes import add_grid, assert_sound, points_of, remesh
 from transfer_scene import add_everything, corners_of, linear, middle_line_of, middles_of, read, uv_of
@@ -255,6 +257,18 @@ def test_replacing_the_mesh_keeps_every_kind():
     assert result.data.shape_keys.key_blocks["More"].relative_key.name == "Lift"
     assert len(bpy.data.meshes) == 1
     assert_sound(result)
+
+
+def test_a_material_made_anew_meanwhile_is_found():
+    """As undo does during a run."""
+    source = add_grid(quads=60)
+    source.data.materials.append(bpy.data.materials.new("Paint"))
+    source.data.materials.append(None)
+    task = prepare_task(source, bpy.context.evaluated_depsgraph_get())
+    bpy.data.materials.remove(bpy.data.materials["Paint"])
+    bpy.data.materials.new("Paint")
+    result = place_result(bpy.context, source, task, task.solve())
+    assert [material and material.name for material in result.data.materials] == ["Paint", None]
 
 
 def test_every_type_on_every_domain():

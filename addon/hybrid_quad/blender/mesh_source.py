@@ -24,7 +24,7 @@ _FLATTEST = 1e-9  # ratio of the smallest to the largest scale below which no wa
 
 @dataclass(frozen=True)
 class MeshSource:
-    """A copy of all that a run needs of an object; holds nothing of Blender's own except the materials.
+    """A copy of all that a run needs of an object; holds nothing of Blender's own except materials in `layers`.
 
     Attributes
     ----------
@@ -46,8 +46,6 @@ class MeshSource:
         Painted density: 2 for edges half as long.
     counts : (k,) int32 or None
         Number of quads that each edge asks for along the chain of edges of its value; 0 and less: free.
-    materials : list
-        The material (or None) of each slot.
     layers : SourceLayers or None
         What the result takes along, where the source was read for a result.
     seen : (n, 3) float64 or None
@@ -63,7 +61,6 @@ class MeshSource:
     guides_of_faces: bool
     density: FloatArray | None
     counts: IntArray | None
-    materials: list[Any]
     layers: SourceLayers | None = None
     seen: FloatArray | None = None
 
@@ -177,7 +174,6 @@ def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
         guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
         counts=guide_attributes.read_counts(mesh),
-        materials=[material.original if material else None for material in mesh.materials],
     )
 
 

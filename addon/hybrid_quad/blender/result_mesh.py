@@ -105,9 +105,6 @@ def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> N
     if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # before Blender 3.6
         mesh.polygons.foreach_set("loop_total", np.full(len(quads), 4, np.int32))
     mesh.update(calc_edges=True)
-    if "materials" in source.layers.kinds:
-        for material in source.materials:
-            mesh.materials.append(material)
     if hasattr(mesh, "use_auto_smooth"):
         # Before Blender 4.1 sharp edges show only with this; 180 degrees: only marked edges are sharp.
         mesh.use_auto_smooth = bool(source.layers.faces.is_smooth.any())

@@ -11,7 +11,18 @@ from ...core.mesh_arrays import FloatArray
 from ...core.remesh import RemeshResult
 from ...core.surface_places import TriangleMesh
 from .. import edge_marks
-from . import attributes, buffers, custom_normals, face_marks, feature_marks, mask, shape_keys, uv_maps, vertex_groups
+from . import (
+    attributes,
+    buffers,
+    custom_normals,
+    face_marks,
+    feature_marks,
+    mask,
+    materials,
+    shape_keys,
+    uv_maps,
+    vertex_groups,
+)
 from . import vertex_marks as vertex_weights
 from .correspondence import Correspondence
 from .rest import Rest
@@ -22,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SourceLayers:
-    """What a source's mesh carries, in arrays.
+    """What a source's mesh carries, in arrays; nothing of Blender's own except materials.
 
     Attributes
     ----------
@@ -37,6 +48,7 @@ class SourceLayers:
     kinds: frozenset[str]
     applied: tuple[str, ...]
     triangles: TriangleMesh
+    materials: tuple[materials.MaterialSlot, ...]
     faces: face_marks.FaceMarks
     uv_maps: tuple[uv_maps.UvMap, ...]
     attributes: attributes.MeshAttributes
@@ -70,6 +82,7 @@ def read(rest: Rest, mesh: bpy.types.Mesh, linear: FloatArray, kinds: frozenset[
         kinds=kinds,
         applied=rest.applied,
         triangles=buffers.triangles_of(mesh, linear),
+        materials=materials.read(mesh) if "materials" in kinds else (),
         faces=face_marks.read(mesh, kinds),
         uv_maps=uv_maps.read(mesh) if "uv_maps" in kinds else (),
         attributes=attributes.read(mesh, colors="color_attributes" in kinds, others="attributes" in kinds),
@@ -100,6 +113,7 @@ def write(obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None
     if layers.mask is not None:
         mask.write(mesh, layers.mask, correspondence)
     vertex_weights.write(mesh, layers.vertex_marks, correspondence)
+    materials.write(mesh, layers.materials)
     face_marks.write(mesh, layers.faces, correspondence)
     edge_marks.write(mesh, *feature_marks.on_result(task, result, layers.kinds))
     uv_maps.write(mesh, layers.uv_maps, correspondence)

@@ -28,7 +28,6 @@ def empty_mesh_like(source: bpy.types.Object, layers: SourceLayers, vertex_count
         bpy.data.meshes.remove(mesh)
         raise
     bpy.data.objects.remove(holder)
-    mesh.materials.clear()
     if "custom_properties" not in layers.kinds:
         _clear_properties(mesh)
     return mesh
