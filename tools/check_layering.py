@@ -5,8 +5,8 @@
 
 C++: a folder of native/hybrid_quad includes only itself and folders that stand before it in native/CMakeLists.txt; of
 a stage, others see only its public header, named like its folder, and those listed in PUBLIC_HEADERS.
-Python: core/ imports neither bpy nor cli/ nor blender/; cli/ imports neither bpy nor blender/; of the rest, only
-blender/ and batch.py import bpy.
+Python: core/ imports none of bpy, worker/, cli/ and blender/; worker/ none of bpy, cli/ and blender/; cli/ neither bpy nor
+blender/; of the rest, only blender/ and batch.py import bpy.
 
 Prints each violation with its file and line; exit status 1 if there is one.
 """
@@ -30,7 +30,12 @@ PUBLIC_HEADERS = {
     "sizing": {"asked_lengths.h", "chord_lengths.h", "feature_size.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
-FORBIDDEN_IMPORTS = {"core": ("bpy", "cli", "blender"), "cli": ("bpy", "blender"), "": ("bpy",)}
+FORBIDDEN_IMPORTS = {
+    "core": ("bpy", "worker", "cli", "blender"),
+    "worker": ("bpy", "cli", "blender"),
+    "cli": ("bpy", "blender"),
+    "": ("bpy",),
+}
 
 
 def main() -> int:

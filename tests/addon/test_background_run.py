@@ -1,77 +1,176 @@
-"""Runs on a thread of their own, as the window has them."""
+"""Runs in a process of their own, as the window has them, and what becomes of their source meanwhile."""
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
 import time
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, operators, remesh_task
+from hybrid_quad.blender import background_run, operators
 from hybrid_quad.blender.remesh_task import prepare_task
-from scenes import add_sphere
+from hybrid_quad.blender.source_track import SourceTrack
+from hybrid_quad.worker import interpreter
+from hybrid_quad.worker.death import WorkerDied
+from scenes import add_cube, add_sphere
+
+LONG_RUN_QUADS = 200_000
 
 
-def _task(quads: int = 400):
-    return prepare_task(add_sphere(quads), bpy.context.evaluated_depsgraph_get())
+def _task(obj: bpy.types.Object):
+    return prepare_task(obj, bpy.context.evaluated_depsgraph_get())
+
+
+def _start(quads: int) -> background_run.BackgroundRun:
+    obj = add_sphere(quads)
+    return background_run.start(_task(obj), obj)
+
+
+def _start_long() -> background_run.BackgroundRun:
+    run = _start(LONG_RUN_QUADS)
+    while run.fraction == 0 and not run.is_finished:
+        time.sleep(0.01)
+    assert not run.is_finished
+    return run
 
 
 def test_gives_what_a_direct_run_gives():
-    task = _task()
-    run = background_run.BackgroundRun(task)
-    expected = task.solve()
+    run = _start(400)
+    expected = run.task.solve()
     assert np.array_equal(run.result().vertices, expected.vertices)
     assert np.array_equal(run.result().quads, expected.quads)
-    assert run.is_finished
+    assert run.is_finished and run.has_result and run.find_source() == bpy.context.object
 
 
-def test_a_stopped_run_ends_within_a_second(monkeypatch):
-    def endless(*_args, progress, cancel, **_kwargs):
-        for step in range(10_000):
-            progress("periodic_field", min(1.0, step / 100))
-            if cancel():
-                raise hybrid_quad.Cancelled("cancelled during periodic_field")
-            time.sleep(0.01)
-
-    task = _task()
-    monkeypatch.setattr(remesh_task, "remesh_with_options", endless)
-    run = background_run.BackgroundRun(task)
-    time.sleep(0.2)
-    assert not run.is_finished and 0 < run.fraction < 1 and run.status.startswith("periodic field, ")
-    run.stop()
-    started = time.monotonic()
-    with pytest.raises(hybrid_quad.Cancelled):
-        run.result()
-    assert time.monotonic() - started < 1
+def test_a_python_program_does_it():
+    command = interpreter.worker_command(host=bpy.app.binary_path)
+    assert Path(command[0]).name.startswith("python") and Path(command[0]) != Path(bpy.app.binary_path or "/")
 
 
-def test_the_method_itself_answers_a_stop():
-    task = _task(quads=200_000)
-    run = background_run.BackgroundRun(task)
-    while run.fraction == 0 and not run.is_finished:
-        time.sleep(0.01)
-    run.stop()
-    started = time.monotonic()
-    with pytest.raises(hybrid_quad.Cancelled):
-        run.result()
-    assert time.monotonic() - started < 1
+@pytest.mark.skipif(not bpy.app.binary_path, reason="bpy as a module has no program")
+def test_where_there_is_no_python_program_blender_does_it(monkeypatch):
+    monkeypatch.setattr(interpreter, "python_programs", lambda: [])
+    run = _start(400)
+    assert run.worker._command[0] == bpy.app.binary_path
+    expected = run.task.solve()
+    assert np.array_equal(run.result().vertices, expected.vertices)
 
 
 def test_disabling_the_add_on_ends_the_run():
-    operator = operators.OBJECT_OT_hybrid_quad_remesh
-    run = operator.current_run = background_run.BackgroundRun(_task(quads=200_000))
+    run = _start_long()
     assert not bpy.ops.object.hybrid_quad_remesh.poll()
+    told = []
+    run.on_forget = lambda: told.append(True)
     hybrid_quad.unregister()
-    assert run.is_finished and operator.current_run is None
+    assert run.worker.wait(10) and background_run.current() is None and told
+    with pytest.raises(hybrid_quad.Cancelled):
+        run.result()
 
 
-def test_errors_come_back_from_the_thread(monkeypatch):
-    def broken(*_args, **_kwargs):
-        raise hybrid_quad.InternalError("made for this test", "nowhere")
+def test_the_cancel_button_ends_the_run(scene_state):
+    assert not bpy.ops.object.hybrid_quad_cancel.poll()
+    with pytest.raises(RuntimeError, match="Nothing is being remeshed"):
+        bpy.ops.object.hybrid_quad_cancel()
+    run = _start_long()
+    before = scene_state()
+    assert bpy.ops.object.hybrid_quad_cancel() == {"FINISHED"}
+    assert run.worker.wait(10) and run.is_cancelled and not run.has_result
+    assert scene_state() == before
 
-    task = _task()
-    monkeypatch.setattr(remesh_task, "remesh_with_options", broken)
-    with pytest.raises(hybrid_quad.InternalError, match="made for this test"):
-        background_run.BackgroundRun(task).result()
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_crash_is_told_with_its_stage(scene_state, capfd):
+    run = _start_long()
+    before = scene_state()
+    os.kill(run.worker.process_id, signal.SIGSEGV)
+    with pytest.raises(WorkerDied) as caught:
+        run.result()
+    message = operators.message_of(caught.value)
+    assert run.worker.stage in message and "Nothing was changed" in message and "segmentation fault" in message
+    assert "Segmentation fault" in capfd.readouterr().err  # where the worker was, for who reports it
+    assert scene_state() == before
+
+
+def test_the_disabled_button_says_why():
+    bpy.context.view_layer.objects.active = None
+    with pytest.raises(RuntimeError, match="Select a mesh object"):
+        bpy.ops.object.hybrid_quad_remesh()
+    _start_long()
+    with pytest.raises(RuntimeError, match='"Sphere" is being remeshed'):
+        bpy.ops.object.hybrid_quad_remesh()
+
+
+def test_the_objects_limits_reach_the_run():
+    obj = add_sphere()
+    assert (_task(obj).options.time_limit, _task(obj).options.memory_limit) == (None, None)
+    obj.hybrid_quad.time_limit, obj.hybrid_quad.memory_limit = 60, 2000
+    assert (_task(obj).options.time_limit, _task(obj).options.memory_limit) == (60, 2000)
+    assert prepare_task(obj, bpy.context.evaluated_depsgraph_get(), time_limit=5).options.time_limit == 5
+
+
+def _move_a_vertex(obj: bpy.types.Object) -> None:
+    obj.data.vertices[3].co.x += 0.125
+
+
+def _mark_a_seam(obj: bpy.types.Object) -> None:
+    obj.data.edges[5].use_seam = True
+
+
+def _paint(obj: bpy.types.Object) -> None:
+    obj.data.attributes.new("hybrid_quad_guide", "FLOAT_VECTOR", "POINT").data[0].vector = (1, 0, 0)
+
+
+def _add_modifier(obj: bpy.types.Object) -> None:
+    obj.modifiers.new("Subdivision", "SUBSURF")
+
+
+def _change_modifier(obj: bpy.types.Object) -> None:
+    obj.modifiers["Bevel"].width = 0.3
+
+
+@pytest.mark.parametrize("change", [_move_a_vertex, _mark_a_seam, _paint, _add_modifier, _change_modifier])
+def test_a_changed_source_is_noticed(change):
+    obj = add_cube()
+    obj.modifiers.new("Bevel", "BEVEL")
+    track = SourceTrack(obj)
+    assert not track.has_changed(track.find())
+    change(obj)
+    assert track.has_changed(track.find())
+
+
+def test_what_changes_nothing_of_the_surface_is_no_change():
+    obj = add_cube()
+    track = SourceTrack(obj)
+    obj.location.x = 3
+    obj.hide_set(True)
+    obj.data.vertices[2].select = not obj.data.vertices[2].select
+    obj.hybrid_quad.quads = 7
+    obj.data.name = "Other"
+    bpy.context.view_layer.update()
+    assert not track.has_changed(track.find())
+
+
+def test_a_renamed_source_is_found_and_a_deleted_one_is_not():
+    obj = add_cube()
+    track = SourceTrack(obj)
+    obj.name = "Renamed"
+    add_cube().name = "Another"
+    assert track.find() == obj
+    bpy.ops.ed.undo_push(message="step")
+    bpy.context.view_layer.objects.active = obj
+    bpy.data.objects.remove(obj)
+    assert track.find() is None
+
+
+def test_a_deleted_source_is_told():
+    run = _start(400)
+    bpy.data.objects.remove(bpy.context.object)
+    run.result()
+    with pytest.raises(hybrid_quad.InputError, match='"Sphere" was deleted'):
+        run.find_source()

@@ -202,12 +202,12 @@ def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
 
 
 def test_a_bug_is_status_3(tmp_path, monkeypatch):
-    from hybrid_quad.blender import remesh_task
+    from hybrid_quad.worker import request
 
     def broken(*_args, **_kwargs):
         raise RuntimeError("made for this test")
 
-    monkeypatch.setattr(remesh_task, "remesh_with_options", broken)
+    monkeypatch.setattr(request, "remesh_with_options", broken)
     add_cube()
     assert command.main(["--object", "Cube", "--output", str(tmp_path / "out.blend")]) == 3
     assert list(tmp_path.iterdir()) == []

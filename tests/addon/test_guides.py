@@ -8,8 +8,9 @@ import bpy
 import numpy as np
 import pytest
 
-from hybrid_quad.blender import guide_lines, remesh_task
+from hybrid_quad.blender import guide_lines
 from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.worker import request
 from scenes import activate, add_cube, add_grid, points_of
 
 MATRIX = np.array([[2, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1]], float)
@@ -102,15 +103,15 @@ def test_what_is_switched_off_is_not_asked(monkeypatch):
     _paint(obj, "hybrid_quad_guide", "POINT", np.ones((len(obj.data.vertices), 3)))
     _paint(obj, "hybrid_quad_density", "POINT", np.full(len(obj.data.vertices), 2.0))
     asked = {}
-    monkeypatch.setattr(remesh_task, "violations", lambda *_: [])
+    monkeypatch.setattr(request, "violations", lambda *_: [])
     result = SimpleNamespace(vertices=None, quads=None)
-    monkeypatch.setattr(remesh_task, "remesh_with_options", lambda *_, **more: asked.update(more) or result)
+    monkeypatch.setattr(request, "remesh_with_options", lambda *_, **more: asked.update(more) or result)
     _task(obj).solve()
     assert len(asked["guides"]) == len(asked["density"]) == len(obj.data.vertices)
     obj.hybrid_quad.use_guide_attribute = obj.hybrid_quad.use_density_attribute = False
     asked.clear()
     _task(obj).solve()
-    assert "guides" not in asked and "density" not in asked
+    assert asked["guides"] is None and asked["density"] is None
 
 
 def _line_points() -> np.ndarray:

@@ -184,23 +184,23 @@ def test_what_the_method_refuses_is_an_error_and_changes_nothing(scene_state):
 
 
 def test_a_bug_of_ours_is_an_error_and_changes_nothing(scene_state, monkeypatch):
-    from hybrid_quad.blender import remesh_task
+    from hybrid_quad.worker import request
 
     def broken(*_args, **_kwargs):
         raise hybrid_quad.InternalError("made for this test", "nowhere")
 
     add_sphere()
     before = scene_state()
-    monkeypatch.setattr(remesh_task, "remesh_with_options", broken)
+    monkeypatch.setattr(request, "remesh_with_options", broken)
     with pytest.raises(RuntimeError, match="made for this test"):
         bpy.ops.object.hybrid_quad_remesh()
     assert scene_state() == before
 
 
 def test_an_invalid_result_never_reaches_the_scene(scene_state, monkeypatch):
-    from hybrid_quad.blender import remesh_task
+    from hybrid_quad.worker import request
 
-    original = remesh_task.remesh_with_options
+    original = request.remesh_with_options
 
     def with_a_hole_in_a_vertex(*args, **kwargs):
         result = original(*args, **kwargs)
@@ -209,7 +209,7 @@ def test_an_invalid_result_never_reaches_the_scene(scene_state, monkeypatch):
 
     add_sphere()
     before = scene_state()
-    monkeypatch.setattr(remesh_task, "remesh_with_options", with_a_hole_in_a_vertex)
+    monkeypatch.setattr(request, "remesh_with_options", with_a_hole_in_a_vertex)
     with pytest.raises(RuntimeError, match="no valid quad mesh"):
         bpy.ops.object.hybrid_quad_remesh()
     assert scene_state() == before

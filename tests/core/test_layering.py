@@ -47,6 +47,8 @@ def test_each_wrong_way_is_found(root, tmp_path):
     put(tmp_path, "addon/hybrid_quad/core/e.py", "def f():\n    import bpy.types\n")
     put(tmp_path, "addon/hybrid_quad/core/f.py", "from ..blender import panels\n")
     put(tmp_path, "addon/hybrid_quad/core/g.py", "from hybrid_quad import cli\n")
+    put(tmp_path, "addon/hybrid_quad/core/i.py", "from ..worker import process\n")
+    put(tmp_path, "addon/hybrid_quad/worker/j.py", "from ..blender import panels\n")
     put(tmp_path, "addon/hybrid_quad/cli/h.py", "from .. import blender\n")
     put(tmp_path, "addon/hybrid_quad/__init__.py", "import bpy\n")
     done = check(root, tmp_path)
@@ -54,6 +56,14 @@ def test_each_wrong_way_is_found(root, tmp_path):
     lines = done.stdout.splitlines()
     for file in ("base/a.h:1", "features/b.cpp:2", "sizing/c.cpp:1", "unlisted/d.h:1", "module.cpp:1"):
         assert sum(file in line for line in lines) == 1, (file, lines)
-    for file in ("core/e.py:2", "core/f.py:1", "core/g.py:1", "cli/h.py:1", "__init__.py:1"):
+    for file in (
+        "core/e.py:2",
+        "core/f.py:1",
+        "core/g.py:1",
+        "core/i.py:1",
+        "worker/j.py:1",
+        "cli/h.py:1",
+        "__init__.py:1",
+    ):
         assert sum(file in line for line in lines) == 1, (file, lines)
-    assert len(lines) == 10
+    assert len(lines) == 12

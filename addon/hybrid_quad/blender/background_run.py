@@ -1,63 +1,121 @@
-"""A run on a thread of its own, so that Blender's window stays alive."""
+"""The run that goes on in a process of its own, while Blender's window is there for other work."""
 
 from __future__ import annotations
 
-import threading
+from collections.abc import Callable
 
+import bpy
+
+from ..core.errors import InputError
 from ..core.remesh import RemeshResult
+from ..worker.interpreter import worker_command
+from ..worker.process import WorkerRun
 from .remesh_task import RemeshTask
+from .source_track import SourceTrack
+
+_SILENCE = 20.0  # seconds without news after which the user reads about it
 
 
 class BackgroundRun:
-    """Solves a task; the thread touches nothing of Blender's.
+    """A task that a worker solves, and the object that it came from.
 
     Attributes
     ----------
-    stage, fraction
-        What runs now, and how much of the whole is done.
+    task : RemeshTask
+    source : SourceTrack
+    in_place : bool
+        Whether the result was to replace the object's mesh when the run began.
+    is_cancelled : bool
+        Whether the user ended it.
+    on_forget : callable()
+        Called when :func:`current` does not give the run any more.
     """
 
-    def __init__(self, task: RemeshTask) -> None:
+    def __init__(self, task: RemeshTask, obj: bpy.types.Object) -> None:
         self.task = task
-        self.stage = "start"
-        self.fraction = 0.0
-        self._stop = threading.Event()
-        self._result: RemeshResult | None = None
-        self._error: BaseException | None = None
-        self._thread = threading.Thread(target=self._solve, name="hybrid_quad", daemon=True)
-        self._thread.start()
+        self.source = SourceTrack(obj)
+        self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
+        self.is_cancelled = False
+        self.on_forget: Callable[[], object] = lambda: None
+        self.worker = WorkerRun(
+            task.request(),
+            temporary_folder=bpy.app.tempdir or None,
+            command=worker_command(host=bpy.app.binary_path),
+        )
+
+    @property
+    def fraction(self) -> float:
+        """How much is done, 0 to 1."""
+        return 1.0 if self.is_finished else self.worker.fraction
 
     @property
     def is_finished(self) -> bool:
-        return not self._thread.is_alive()
+        return self.worker.is_finished
 
-    def stop(self) -> None:
-        """Asks the run to stop; it does within a second."""
-        self._stop.set()
-
-    def wait(self) -> None:
-        """Returns when the thread has ended."""
-        self._thread.join()
-
-    def result(self) -> RemeshResult:
-        """The finished run's result; raises what the run raised."""
-        self.wait()
-        if self._error is not None:
-            raise self._error
-        assert self._result is not None
-        return self._result
+    @property
+    def has_result(self) -> bool:
+        return self.worker.has_result
 
     @property
     def status(self) -> str:
-        """For example ``"periodic field, 42 %"``."""
-        return f"{self.stage.replace('_', ' ')}, {100 * self.fraction:.0f} %"
+        """What it does now, for example ``"Periodic field"``."""
+        if self.is_finished:
+            return "Done: go to Object Mode to get it"
+        silence = self.worker.silent_seconds
+        text = self.worker.stage.replace("_", " ").capitalize()
+        return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
 
-    def _solve(self) -> None:
-        try:
-            self._result = self.task.solve(self._progress, self._stop.is_set)
-        except BaseException as error:  # carried over to the main thread
-            self._error = error
+    def cancel(self) -> None:
+        """Ends the worker at once, whatever it does."""
+        self.is_cancelled = True
+        self.worker.cancel()
 
-    def _progress(self, stage: str, fraction: float) -> None:
-        self.stage = stage
-        self.fraction = fraction
+    def result(self) -> RemeshResult:
+        """The finished run's result; raises what the run raised, see :meth:`.process.WorkerRun.result`."""
+        return self.worker.result()
+
+    def find_source(self) -> bpy.types.Object:
+        """The object that the result is for.
+
+        Raises
+        ------
+        InputError
+            ``object_gone``.
+        """
+        obj = self.source.find()
+        if obj is None:
+            raise InputError("object_gone", f'"{self.source.name}" was deleted during the run; its result is dropped')
+        return obj
+
+
+_current: BackgroundRun | None = None
+
+
+def current() -> BackgroundRun | None:
+    """The run that goes on, if any: Blender's window serves one at a time."""
+    return _current
+
+
+def start(task: RemeshTask, obj: bpy.types.Object) -> BackgroundRun:
+    """Begins a run that :func:`current` gives from now on.
+
+    Raises
+    ------
+    FileNotFoundError
+        If no program can run the worker.
+    """
+    global _current
+    assert _current is None
+    _current = BackgroundRun(task, obj)
+    return _current
+
+
+def forget() -> None:
+    """Lets the current run go, if there is one; what is not finished is ended."""
+    global _current
+    run, _current = _current, None
+    if run is None:
+        return
+    if not run.is_finished:
+        run.cancel()
+    run.on_forget()

@@ -1,37 +1,28 @@
-"""The operator ``object.hybrid_quad_remesh``."""
+"""The operators ``object.hybrid_quad_remesh`` and ``object.hybrid_quad_cancel``."""
 
 from __future__ import annotations
 
+import sys
 import traceback
 from typing import Any
 
 import bpy
 
 from ..cli.messages import describe_defect, describe_elements
+from ..core import native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
-from .background_run import BackgroundRun
+from ..worker.death import WorkerDied
+from . import background_run
 from .remesh_task import RemeshTask, prepare_task
-from .result_mesh import place_result
+from .result_mesh import Placement, place_result
+from .run_display import RunDisplay, redraw_sidebars
 
 _TIMER_SECONDS = 0.1
-# What the user may do while a run goes on: look around. Anything else could change the scene under it.
-_HARMLESS_EVENTS = frozenset(
-    (
-        "MOUSEMOVE",
-        "INBETWEEN_MOUSEMOVE",
-        "MIDDLEMOUSE",
-        "WHEELUPMOUSE",
-        "WHEELDOWNMOUSE",
-        "TRACKPADPAN",
-        "TRACKPADZOOM",
-        "NDOF_MOTION",
-    )
-)
 
 
 class ActiveMeshOperator(bpy.types.Operator):
-    """Works on the active object where that is a mesh, in Object Mode, while no run goes on."""
+    """Works on the active object where that is a mesh, in Object Mode."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -46,74 +37,99 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
 
     bl_idname = "object.hybrid_quad_remesh"
     bl_label = "Remesh to Quads"
-    bl_options = {"REGISTER", "UNDO"}
+    # Not REGISTER: repeating it from the list of operators would run it with the window frozen.
+    bl_options = {"UNDO"}
 
-    # The run that goes on in the background, if any: Blender's window serves one at a time.
-    current_run: BackgroundRun | None = None
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        run = background_run.current()
+        if run is not None:
+            cls.poll_message_set(f'"{run.source.name}" is being remeshed: wait for it, or cancel it')
+            return False
+        if not native.is_there():
+            cls.poll_message_set("The compiled part is missing: install a release of the add-on")
+            return False
+        return super().poll(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The whole run at once: for scripts and Blender without a window."""
         obj = context.object
         try:
             task = prepare_task(obj, context.evaluated_depsgraph_get())
-            return self._finish(context, obj, task, task.solve())
+            return self._finish(context, obj, task, task.solve(), Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        if bpy.app.background:
+        """Leaves the run to a worker process; the user goes on working."""
+        if bpy.app.background or context.window is None:
             return self.execute(context)
         try:
             task = prepare_task(context.object, context.evaluated_depsgraph_get())
+            self._run = background_run.start(task, context.object)
         except Exception as error:
             return self._fail(error)
-        self._object_name = context.object.name
-        OBJECT_OT_hybrid_quad_remesh.current_run = BackgroundRun(task)
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
+        self._display = RunDisplay(self._run)
+        self._run.on_forget = self._end_modal
+        self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        self._display.update(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        run = OBJECT_OT_hybrid_quad_remesh.current_run
-        if run is None:  # the add-on was disabled meanwhile
-            self._end_modal(context)
+        """Every event goes on to Blender. What another operator or a text field is busy with does not even come here."""
+        if background_run.current() is not self._run:  # it was ended from outside
             return {"CANCELLED"}
-        if event.type == "ESC" and event.value == "PRESS":
-            run.stop()
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"} if event.type in _HARMLESS_EVENTS else {"RUNNING_MODAL"}
-        if not run.is_finished:
-            context.window_manager.progress_update(100 * run.fraction)
-            context.workspace.status_text_set(f"Hybrid Quad: {run.status}    Esc: cancel")
-            _redraw_views(context)
-            return {"RUNNING_MODAL"}
-        self._end_modal(context)
-        obj = bpy.data.objects.get(self._object_name)
+        if _is_escape(context, event) and not self._run.is_finished:
+            self._run.cancel()
+        elif event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if self._run.is_cancelled:
+            background_run.forget()
+            self.report({"INFO"}, f'Remeshing "{self._run.source.name}" was cancelled; nothing was changed')
+            return {"CANCELLED"}
+        if not self._run.is_finished or (self._run.has_result and context.mode != "OBJECT"):
+            self._display.update(context)
+            return {"PASS_THROUGH"}
+        background_run.forget()
         try:
-            if obj is None:
-                raise InputError("object_gone", f'"{self._object_name}" was deleted or renamed during the run')
-            return self._finish(context, obj, run.task, run.result())
+            obj = self._run.find_source()
+            return self._finish(context, obj, self._run.task, self._run.result(), self._placement(context, obj))
         except Exception as error:
             return self._fail(error)
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, _context: bpy.types.Context) -> None:
         """Blender ends the operator by itself: another file is loaded, or the window closes."""
-        stop_background_run()
-        self._end_modal(context)
+        background_run.forget()
 
-    def _end_modal(self, context: bpy.types.Context) -> None:
-        OBJECT_OT_hybrid_quad_remesh.current_run = None
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-        _redraw_views(context)
+    def _end_modal(self) -> None:
+        bpy.context.window_manager.event_timer_remove(self._timer)
+        self._display.clear()
+
+    def _placement(self, context: bpy.types.Context, obj: bpy.types.Object) -> Placement:
+        """Where the result goes, with regard to what the user did meanwhile."""
+        is_changed = obj.mode != "OBJECT" or self._run.source.has_changed(obj)
+        if is_changed:
+            self.report(
+                {"WARNING"},
+                f'"{obj.name}" was changed during the run. The result is a new object that shows it as it was when the run '
+                "began, and nothing is hidden or replaced",
+            )
+        return Placement(
+            in_place=self._run.in_place and not is_changed,
+            hides_source=not is_changed,
+            takes_selection=not is_changed and context.view_layer.objects.active == obj,
+        )
 
     def _finish(
-        self, context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult
+        self,
+        context: bpy.types.Context,
+        obj: bpy.types.Object,
+        task: RemeshTask,
+        result: RemeshResult,
+        placement: Placement,
     ) -> set[str]:
-        target = place_result(context, obj, task, result)
+        target = place_result(context, obj, task, result, placement)
         for defect in result.report["defects"]:
             self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
         for warning in result.report["warnings"]:
@@ -127,26 +143,48 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
         return {"CANCELLED"}
 
 
+class OBJECT_OT_hybrid_quad_cancel(bpy.types.Operator):
+    """Stop remeshing; nothing is changed"""
+
+    bl_idname = "object.hybrid_quad_cancel"
+    bl_label = "Cancel"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        if background_run.current() is None:
+            cls.poll_message_set("Nothing is being remeshed")
+            return False
+        return True
+
+    def execute(self, _context: bpy.types.Context) -> set[str]:
+        run = background_run.current()
+        assert run is not None
+        run.cancel()  # the modal operator tells
+        redraw_sidebars()
+        return {"FINISHED"}
+
+
 def message_of(error: BaseException) -> str:
     """What the user reads about a failed run; what is a bug also goes to the console in full."""
     if isinstance(error, InputError):
         return f"{error}{describe_elements(error)}"
     if isinstance(error, Cancelled):
         return f"Nothing was changed: {error}"
+    if isinstance(error, MemoryError):
+        return f"Nothing was changed: memory ran out {error}".rstrip()
+    if isinstance(error, OSError) and not isinstance(error, ImportError):
+        return f"Nothing was changed: the run could not be started or read: {error}"
     if isinstance(error, (ImportError, ValueError)):
         return str(error)
+    if isinstance(error, WorkerDied):
+        print(f"hybrid_quad: {error}\n{error.log}", file=sys.stderr)  # noqa: T201
+        return f"Nothing was changed: {error}"
     traceback.print_exception(type(error), error, error.__traceback__)
     kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
-    return f"Internal error, nothing was changed: {kind}{error}. Please report it with the mesh"
-
-
-def stop_background_run() -> None:
-    """Ends the run in the background, if there is one, and waits until it has."""
-    run = OBJECT_OT_hybrid_quad_remesh.current_run
-    if run is not None:
-        run.stop()
-        run.wait()
-        OBJECT_OT_hybrid_quad_remesh.current_run = None
+    stage = getattr(error, "stage", "").replace("_", " ")
+    where = f" during {stage}" if stage else ""
+    return f"Internal error{where}, nothing was changed: {kind}{error}. Please report it with the mesh"
 
 
 def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
@@ -158,8 +196,6 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
 def problem_of(context: bpy.types.Context) -> str:
     """Why the active object cannot be worked on now; empty where it can."""
     obj = context.object
-    if OBJECT_OT_hybrid_quad_remesh.current_run is not None:
-        return "A run is going on already"
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first"
     if obj.mode != "OBJECT":
@@ -169,11 +205,21 @@ def problem_of(context: bpy.types.Context) -> str:
     return ""
 
 
-def _redraw_views(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+def _is_escape(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Whether Esc is pressed over a 3D view, where it means nothing else.
+
+    Playback of an animation has the older claim.
+    """
+    if event.type != "ESC" or event.value != "PRESS" or event.shift or event.ctrl or event.alt or event.oskey:
+        return False
+    if context.screen.is_animation_playing:
+        return False
+    return any(
+        area.type == "VIEW_3D"
+        and area.x <= event.mouse_x < area.x + area.width
+        and area.y <= event.mouse_y < area.y + area.height
+        for area in context.screen.areas
+    )
 
 
-CLASSES = (OBJECT_OT_hybrid_quad_remesh,)
+CLASSES = (OBJECT_OT_hybrid_quad_remesh, OBJECT_OT_hybrid_quad_cancel)

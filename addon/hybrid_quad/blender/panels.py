@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 from typing import Any
 
 import bpy
 
+from ..core import native
+from . import background_run
 from .check_operators import (
     OBJECT_OT_hybrid_quad_check,
     OBJECT_OT_hybrid_quad_select_defect,
@@ -15,7 +16,7 @@ from .check_operators import (
 )
 from .edge_marks import BORDERS, SHARP, SOURCES
 from .guide_lines import LINE_TYPES
-from .operators import OBJECT_OT_hybrid_quad_remesh
+from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
 from .properties import SIZE_SETTINGS
 from .result_mesh import read_report
 from .transfer.kinds import KINDS
@@ -44,10 +45,13 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
+        run = background_run.current()
+        if run is not None:
+            _draw_run(layout, context, run)
         if not super().poll(context):
             layout.label(text="Select a mesh object", icon="INFO")
             return
-        if not _has_native_module():
+        if not native.is_there():
             layout.label(text="The compiled part is missing:", icon="ERROR")
             layout.label(text="install a release of the add-on")
         settings = context.object.hybrid_quad
@@ -55,13 +59,10 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "target_mode")
         column.prop(settings, SIZE_SETTINGS[settings.target_mode])
         layout.prop(settings, "result_mode")
-        run = OBJECT_OT_hybrid_quad_remesh.current_run
         if run is None:
             button = layout.row()
             button.scale_y = 1.5
             button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
-        else:
-            _draw_progress(layout, run.fraction, run.status)
 
 
 class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
@@ -202,6 +203,22 @@ class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
         columns["Object"].active = settings.result_mode == "NEW"
 
 
+class VIEW3D_PT_hybrid_quad_limits(_HybridQuadPanel, bpy.types.Panel):
+    """When a run is ended."""
+
+    bl_label = "Limits"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.prop(context.object.hybrid_quad, "time_limit")
+        column.prop(context.object.hybrid_quad, "memory_limit")
+
+
 class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
     """What is wrong with the mesh."""
 
@@ -280,16 +297,20 @@ def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
 
 
-def _draw_progress(layout: Any, fraction: float, text: str) -> None:
+def _draw_run(layout: Any, context: bpy.types.Context, run: background_run.BackgroundRun) -> None:
+    """What the background run is about, how far it is, and the button that ends it."""
+    box = layout.box().column()
+    box.use_property_split = False
+    box.label(text=run.source.name, icon="MOD_REMESH")
+    box.label(text=run.status)
+    if run.is_finished:
+        box.operator(OBJECT_OT_hybrid_quad_cancel.bl_idname, text="Drop the Result", icon="X")
+        return
     if hasattr(layout, "progress"):  # from Blender 4.0 on
-        layout.progress(factor=fraction, text=text)
+        box.progress(factor=run.fraction, text=f"{100 * run.fraction:.0f} %")
     else:
-        layout.label(text=text, icon="TIME")
-    layout.label(text="Esc: cancel")
-
-
-def _has_native_module() -> bool:
-    return importlib.util.find_spec(f"{__package__.rpartition('.')[0]}._native") is not None
+        box.prop(context.window_manager, "hybrid_quad_progress", text="", slider=True)
+    box.operator(OBJECT_OT_hybrid_quad_cancel.bl_idname, icon="X")
 
 
 CLASSES = (
@@ -300,6 +321,7 @@ CLASSES = (
     VIEW3D_PT_hybrid_quad_flow,
     VIEW3D_PT_hybrid_quad_symmetry,
     VIEW3D_PT_hybrid_quad_transfer,
+    VIEW3D_PT_hybrid_quad_limits,
     VIEW3D_PT_hybrid_quad_check,
     VIEW3D_PT_hybrid_quad_report,
 )

@@ -258,6 +258,24 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"
     )
+    time_limit: bpy.props.FloatProperty(
+        name="Time",
+        description="End a run that takes longer than this, and leave everything as it is. 0: no limit",
+        default=0.0,
+        min=0.0,
+        soft_max=3600.0,
+        precision=0,
+        step=1000,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
+    memory_limit: bpy.props.IntProperty(
+        name="Memory (MB)",
+        description="End a run whose process needs more memory than this, and leave everything as it is. 0: no limit",
+        default=0,
+        min=0,
+        soft_max=65536,
+    )
     last_report: bpy.props.StringProperty(
         name="Last Report", description="Report of the latest run as JSON", options={"HIDDEN"}
     )

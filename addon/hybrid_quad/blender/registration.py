@@ -11,7 +11,7 @@ try:
 except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
-from . import check_operators, command, operators, panels, properties
+from . import background_run, check_operators, command, operators, panels, properties, run_display
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES)
 
@@ -24,18 +24,20 @@ def register() -> None:
     bpy.types.Object.hybrid_quad = bpy.props.PointerProperty(
         type=properties.HybridQuadSettings, name="Hybrid Quad", description="How this object is remeshed"
     )
+    run_display.register()
     bpy.types.VIEW3D_MT_object.append(operators.draw_menu_entry)
     command.register()
 
 
 def unregister() -> None:
     """Safe to call where nothing is registered."""
-    operators.stop_background_run()
+    background_run.forget()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
     bpy.types.VIEW3D_MT_object.remove(operators.draw_menu_entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
+    run_display.unregister()
     for cls in reversed(CLASSES):
         with contextlib.suppress(RuntimeError):  # not registered
             bpy.utils.unregister_class(cls)

@@ -11,13 +11,11 @@ import bpy
 import numpy as np
 
 from ..core.curve_counts import chains_of_edges
-from ..core.errors import InternalError
-from ..core.guide_values import guides_of_vertices
 from ..core.mesh_arrays import FloatArray, IntArray
 from ..core.options import RemeshOptions
-from ..core.remesh import RemeshResult, remesh_with_options, usual_length
-from ..core.strokes import Stroke, guides_from_strokes, strokes_of_segments, stronger_of
-from ..core.validation import violations
+from ..core.remesh import RemeshResult
+from ..core.strokes import Stroke, strokes_of_segments
+from ..worker.request import RemeshRequest
 from . import edge_marks, guide_lines
 from .mesh_source import MeshSource, read_source
 from .transfer import kinds
@@ -73,47 +71,37 @@ class RemeshTask:
 
     def guides(self) -> FloatArray | None:
         """(n, 3) or (#F, 3) directions, painted and drawn; None where there are none. Takes its time."""
+        return self.request().directions()
+
+    def request(self) -> RemeshRequest:
+        """The task without Blender's materials and marks, for a run here or in another process."""
         source = self.source
-        painted = source.guides if self.use_guides else None
-        vertex_count, face_count = len(source.vertices), len(source.polygons.sizes)
-        # One for each face is no good beside strokes, nor where it could be taken for one for each vertex.
-        directions = [stroke for stroke in self.strokes if stroke.kind == "direction"]
-        if source.guides_of_faces and painted is not None and (directions or vertex_count == face_count):
-            painted = guides_of_vertices(painted, source.polygons, vertex_count)
-        if not directions:
-            return painted
-        length = usual_length(source.vertices, source.polygons, self.options)
-        drawn = guides_from_strokes(source.vertices, source.polygons, directions, self.stroke_radius * length)
-        return stronger_of(painted, drawn)
+        return RemeshRequest(
+            source.vertices,
+            source.polygons,
+            self.options,
+            self.marked_edges,
+            curve_counts=list(self.curve_counts),
+            guides=source.guides if self.use_guides else None,
+            guides_of_faces=source.guides_of_faces,
+            strokes=self.strokes,
+            stroke_radius=self.stroke_radius,
+            density=source.density if self.use_density else None,
+        )
 
     def solve(
         self,
         progress: Callable[[str, float], object] | None = None,
         cancel: Callable[[], bool] | None = None,
     ) -> RemeshResult:
-        """Runs the method; touches nothing of Blender's, so any thread may call it.
+        """Runs the method in this process; touches nothing of Blender's, so any thread may call it.
 
         Raises
         ------
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does.
         """
-        wishes = {"guides": self.guides(), "density": self.source.density if self.use_density else None}
-        result = remesh_with_options(
-            self.source.vertices,
-            self.source.polygons,
-            self.options,
-            sharp_edges=self.marked_edges,
-            curve_counts=self.curve_counts,
-            strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
-            progress=progress,
-            cancel=cancel,
-            **{name: wish for name, wish in wishes.items() if wish is not None},
-        )
-        problems = violations(result.vertices, result.quads)
-        if problems:
-            raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
-        return result
+        return self.request().solve(progress, cancel)
 
 
 def prepare_task(
@@ -125,7 +113,7 @@ def prepare_task(
     time_limit: float | None = None,
     memory_limit: float | None = None,
 ) -> RemeshTask:
-    """What an object's settings ask of its mesh as it is now.
+    """What an object's settings ask of its mesh as it is now; a limit that is not given is the settings'.
 
     Raises
     ------
@@ -143,8 +131,8 @@ def prepare_task(
         symmetry=settings.symmetry,
         seed=seed,
         threads=threads,
-        time_limit=time_limit,
-        memory_limit=memory_limit,
+        time_limit=settings.time_limit or None if time_limit is None else time_limit,
+        memory_limit=settings.memory_limit or None if memory_limit is None else memory_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
     source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=kinds.asked_by(settings))

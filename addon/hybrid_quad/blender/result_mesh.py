@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -18,16 +19,42 @@ from .transfer import layers as transfer_layers
 from .transfer import object_data
 
 
+@dataclass(frozen=True)
+class Placement:
+    """Where a result goes.
+
+    Attributes
+    ----------
+    in_place : bool
+        It replaces the object's mesh, rather than becoming an object of its own.
+    hides_source, takes_selection : bool
+        Whether the object that a new one is made of is hidden, and the new one selected and active instead.
+    """
+
+    in_place: bool
+    hides_source: bool = True
+    takes_selection: bool = True
+
+    @classmethod
+    def of_settings(cls, obj: bpy.types.Object) -> Placement:
+        """As an object's settings say."""
+        return cls(in_place=obj.hybrid_quad.result_mode == "REPLACE")
+
+
 def place_result(
-    context: bpy.types.Context, obj: bpy.types.Object, task: RemeshTask, result: RemeshResult
+    context: bpy.types.Context,
+    obj: bpy.types.Object,
+    task: RemeshTask,
+    result: RemeshResult,
+    placement: Placement | None = None,
 ) -> bpy.types.Object:
-    """Puts a run's result where the object's settings want it, and returns the object that has it.
+    """Puts a run's result where it is wanted, by default as the object's settings say; returns the object that has it.
 
     Nothing of the scene changes before the whole mesh exists.
     """
+    placement = placement or Placement.of_settings(obj)
     mesh = build_mesh(obj, task, result)
-    in_place = obj.hybrid_quad.result_mode == "REPLACE"
-    target = _replace_mesh(obj, mesh, task) if in_place else _add_object(context, obj, mesh, task)
+    target = _replace_mesh(obj, mesh, task) if placement.in_place else _add_object(context, obj, mesh, task, placement)
     for each in {obj, target}:
         each.hybrid_quad.last_report = report.as_text(result.report)
     return target
@@ -91,7 +118,7 @@ def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> N
 
 
 def _add_object(
-    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, task: RemeshTask
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, task: RemeshTask, placement: Placement
 ) -> bpy.types.Object:
     layers = task.source.layers
     result = source.copy()
@@ -106,13 +133,16 @@ def _add_object(
         result.local_view_set(space, True)
     context.view_layer.update()  # only then does the view layer know the new object
     if result.name in context.view_layer.objects:
-        for other in context.selected_objects:
-            other.select_set(False)
         result.hide_set(False)
-        result.select_set(True)
-        context.view_layer.objects.active = result
-    source.hide_set(True)
-    source.hide_render = True
+        result.select_set(placement.takes_selection)
+        if placement.takes_selection:
+            for other in context.selected_objects:
+                other.select_set(other == result)
+            context.view_layer.objects.active = result
+    if placement.hides_source:
+        if source.name in context.view_layer.objects:
+            source.hide_set(True)
+        source.hide_render = True
     return result
 
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from importlib import import_module
+from importlib import import_module, util
 from types import ModuleType
 
 _PACKAGE = __package__.rpartition(".")[0]
+
+
+def is_there() -> bool:
+    """Whether the module is installed for this Python; it may still fail to load."""
+    return util.find_spec(f"{_PACKAGE}._native") is not None
 
 
 def load() -> ModuleType:

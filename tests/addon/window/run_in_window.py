@@ -22,8 +22,7 @@ sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parents[2] / "addo
 sys.path.insert(0, str(HERE.parent))
 
 import hybrid_quad  # noqa: E402
-from hybrid_quad.blender import panels  # noqa: E402
-from hybrid_quad.blender.operators import OBJECT_OT_hybrid_quad_remesh as Operator  # noqa: E402
+from hybrid_quad.blender import background_run, panels  # noqa: E402
 from scenes import add_sphere, faces_of  # noqa: E402
 
 PICTURES = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
@@ -73,7 +72,7 @@ def steps() -> Iterator[float]:
     before = sorted(bpy.data.objects.keys()), sorted(bpy.data.meshes.keys())
     with in_view():
         bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT")
-    run = Operator.current_run
+    run = background_run.current()
     started = time.monotonic()
     while run.fraction == 0 and time.monotonic() - started < 30:
         yield 0.05
@@ -82,7 +81,7 @@ def steps() -> Iterator[float]:
     press("ESC")
     started = time.monotonic()
     yield from until_finished()
-    # The method answers within a second; a window drawn without a graphics card takes its time between events.
+    # The worker is dead within a second; a window drawn without a graphics card takes its time between events.
     expect(time.monotonic() - started < 20, "Esc ends it")
     try:
         run.result()
@@ -160,7 +159,7 @@ def show_sidebar_tab() -> Iterator[float]:
 
 def until_finished() -> Iterator[float]:
     started = time.monotonic()
-    while Operator.current_run is not None:
+    while background_run.current() is not None:
         expect_in_time = time.monotonic() - started < 60
         if not expect_in_time:
             raise AssertionError("the run does not end")
@@ -176,8 +175,8 @@ def take_picture(name: str) -> Iterator[float]:
         yield 0.3
 
 
-def main() -> None:
-    test = steps()
+def main(test: Iterator[float]) -> None:
+    """Steps through a test, and ends Blender with status 0 or 1."""
 
     def tick() -> float:
         try:
@@ -191,7 +190,8 @@ def main() -> None:
         sys.stderr.flush()
         os._exit(status)
 
-    bpy.app.timers.register(tick, first_interval=2.0)
+    bpy.app.timers.register(tick, first_interval=2.0, persistent=True)
 
 
-main()
+if __name__ == "__main__":
+    main(steps())

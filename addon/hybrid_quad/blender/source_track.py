@@ -1,0 +1,109 @@
+"""Finds a run's source again, whatever was done in Blender meanwhile, and says whether it is still what was read."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import bpy
+import numpy as np
+
+# How many numbers of what kind an element of an attribute has, and what they are called.
+_ATTRIBUTES = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int32),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT16_2D": ("value", 2, np.int32),
+    "INT32_2D": ("value", 2, np.int32),
+    "QUATERNION": ("value", 4, np.float32),
+}
+# What is selected or hidden is no change of a mesh.
+_DISPLAY_ATTRIBUTES = (".select", ".hide", ".vs.", ".es.", ".pn.")
+# Marks that older Blenders keep outside attributes.
+_EDGE_MARKS = ("use_seam", "use_edge_sharp", "crease", "bevel_weight", "use_freestyle_mark")
+
+
+class SourceTrack:
+    """An object as it was when a run began.
+
+    Holds nothing of Blender's own, as undo may put other objects in the place of those that were.
+
+    Attributes
+    ----------
+    name : str
+        Of the object, then.
+    """
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        self.name: str = obj.name
+        self._identity = _identity(obj)
+        self._mesh_name: str = obj.data.name
+        self._state = _state(obj)
+
+    def find(self) -> bpy.types.Object | None:
+        """The object, even if it was renamed; None where it is in no scene any more."""
+        found = next((obj for obj in bpy.data.objects if _identity(obj) == self._identity), None)
+        if not hasattr(bpy.types.ID, "session_uid") and (found is None or not self._has_a_name_of(found)):
+            # Before Blender 4.2 only the place in memory tells objects apart. Undo moves them, but keeps their names.
+            found = bpy.data.objects.get(self.name)
+        if found is None or found.type != "MESH" or not found.users_scene:
+            return None
+        return found
+
+    def has_changed(self, obj: bpy.types.Object) -> bool:
+        """Whether the object's mesh or modifiers are others than when the run began. Only in Object Mode."""
+        return _state(obj) != self._state
+
+    def _has_a_name_of(self, obj: bpy.types.Object) -> bool:
+        return obj.name == self.name or (obj.type == "MESH" and obj.data.name == self._mesh_name)
+
+
+def _identity(obj: bpy.types.Object) -> int:
+    return int(obj.session_uid) if hasattr(obj, "session_uid") else int(obj.as_pointer())
+
+
+def _state(obj: bpy.types.Object) -> bytes:
+    """A digest of an object's mesh, without what is selected, and of its modifiers' settings."""
+    mesh, digest = obj.data, hashlib.blake2b()
+    _add(digest, mesh.vertices, "co", 3, np.float32)
+    _add(digest, mesh.edges, "vertices", 2, np.int32)
+    _add(digest, mesh.loops, "vertex_index", 1, np.int32)
+    _add(digest, mesh.polygons, "loop_start", 1, np.int32)
+    _add(digest, mesh.polygons, "use_smooth", 1, np.bool_)
+    _add(digest, mesh.polygons, "material_index", 1, np.int32)
+    for name in _EDGE_MARKS:
+        if name in bpy.types.MeshEdge.bl_rna.properties:
+            _add(digest, mesh.edges, name, 1, np.float32)
+    for attribute in mesh.attributes:
+        if attribute.data_type in _ATTRIBUTES and not attribute.name.startswith(_DISPLAY_ATTRIBUTES):
+            digest.update(f"{attribute.name} {attribute.domain} {attribute.data_type}".encode())
+            _add(digest, attribute.data, *_ATTRIBUTES[attribute.data_type])
+    for modifier in obj.modifiers:
+        digest.update(repr(_settings(modifier)).encode())
+    return digest.digest()
+
+
+def _add(digest: Any, collection: Any, name: str, width: int, dtype: type) -> None:
+    values = np.zeros(len(collection) * width, dtype)
+    collection.foreach_get(name, values)
+    digest.update(values.tobytes())
+
+
+def _settings(modifier: bpy.types.Modifier) -> list[tuple[str, str]]:
+    """What a user can set of a modifier, and what it names."""
+    settings = []
+    for prop in modifier.bl_rna.properties:
+        if prop.is_readonly or prop.identifier in ("show_expanded", "is_active", "use_pin_to_last"):
+            continue
+        value = getattr(modifier, prop.identifier)
+        if prop.type == "POINTER":
+            value = value.name if isinstance(value, bpy.types.ID) else None
+        elif getattr(prop, "is_array", False):
+            value = [each[:] if hasattr(each, "__getitem__") else each for each in value]
+        settings.append((prop.identifier, repr(value)))
+    return settings

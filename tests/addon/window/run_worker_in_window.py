@@ -1,0 +1,290 @@
+"""Runs in the background in a real window, and what a person, or the system, does meanwhile.
+
+    xvfb-run -a -s "-screen 0 1600x1000x24" \\
+        blender --factory-startup --enable-event-simulate -P run_worker_in_window.py -- [FOLDER]
+
+Ends Blender with status 0 or 1. FOLDER receives pictures of the window.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
+
+import hybrid_quad
+from hybrid_quad.blender import background_run
+from scenes import activate, add_cube, add_sphere
+
+LONG_RUN_QUADS = 150_000
+
+
+def steps() -> Iterator[float]:
+    """The test; every number is a pause in seconds, in which Blender handles events."""
+    bpy.context.preferences.view.show_splash = False
+    hybrid_quad.register()
+    yield from new_scene()
+    yield from show_sidebar_tab()
+    yield from working_meanwhile()
+    for test in (
+        ended_by_escape,
+        ended_by_the_button,
+        killed,
+        hanging,
+        source_deleted,
+        source_edited,
+        source_renamed,
+        other_object_active,
+        finished_in_another_mode,
+        undone_meanwhile,
+        another_file_loaded,
+    ):
+        print(f"-- {test.__name__.replace('_', ' ')}", flush=True)
+        yield from new_scene()
+        yield from test()
+        expect(background_run.current() is None, "no run is left")
+    hybrid_quad.unregister()
+    yield 0.3
+
+
+def working_meanwhile() -> Iterator[float]:
+    """Objects can be moved, modes entered, operators and text fields left by Esc, and the run goes on."""
+    print(f"pauses of the window without a run: {(yield from pauses())}", flush=True)
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    cube = bpy.data.objects["Cube"]
+    print(f"and with one: {(yield from pauses())}", flush=True)
+    activate(cube)
+    yield 0.3
+    yield from take_picture("4_working_meanwhile.png")
+    with in_view():
+        bpy.ops.transform.translate("INVOKE_DEFAULT")
+    yield 0.5
+    press("ESC")
+    yield 0.5
+    expect(background_run.current() is run, "Esc in another operator is that operator's")
+    with in_view():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        bpy.ops.object.mode_set(mode="OBJECT")
+    expect(len(cube.data.polygons) > 1000, "another object can be edited")
+    window, _ = view()
+    other = next(area for area in window.screen.areas if area.type == "PROPERTIES")
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="ESC", value=value, x=other.x + other.width // 2, y=other.y + other.height // 2)
+    yield 0.5
+    expect(background_run.current() is run and not run.is_cancelled, "so is Esc in another editor")
+    background_run.forget()
+    yield 0.5
+
+
+def ended_by_escape() -> Iterator[float]:
+    yield from start(LONG_RUN_QUADS)
+    yield from expect_unchanged_after(lambda: press("ESC"))
+    expect_said("was cancelled")
+
+
+def ended_by_the_button() -> Iterator[float]:
+    yield from start(LONG_RUN_QUADS)
+    yield from expect_unchanged_after(bpy.ops.object.hybrid_quad_cancel)
+    expect_said("was cancelled")
+
+
+def killed() -> Iterator[float]:
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGKILL))
+    expect_said(run.worker.stage, "SIGKILL")
+    yield from take_picture("5_killed.png")
+    press("ESC")  # the message
+    yield 0.3
+
+
+def hanging() -> Iterator[float]:
+    yield from start(LONG_RUN_QUADS)
+    os.kill(background_run.current().worker.process_id, signal.SIGSTOP)
+    yield from expect_unchanged_after(lambda: press("ESC"))
+
+
+def source_deleted() -> Iterator[float]:
+    yield from start(300)
+    with in_view():
+        bpy.ops.object.delete()
+    yield from until_finished()
+    expect("Sphere Quads" not in bpy.data.objects, "nothing comes of a deleted object")
+    expect_said('"Sphere" was deleted')
+    press("ESC")
+    yield 0.3
+
+
+def source_edited() -> Iterator[float]:
+    yield from start(300, mode="REPLACE")
+    sphere = bpy.data.objects["Sphere"]
+    sphere.data.vertices[0].co.z += 5
+    yield from until_finished()
+    expect(bpy.data.objects["Sphere"].data.vertices[0].co.z > 5, "the edited mesh is not replaced")
+    expect(not bpy.data.objects["Sphere"].hide_get(), "nor hidden")
+    expect("Sphere Quads" in bpy.data.objects, "the result is beside it")
+    expect_said('"Sphere" was changed')
+
+
+def source_renamed() -> Iterator[float]:
+    yield from start(300)
+    bpy.data.objects["Sphere"].name = "Ball"
+    yield from until_finished()
+    expect(bpy.context.view_layer.objects.active.name == "Ball Quads", "a new name is followed")
+
+
+def other_object_active() -> Iterator[float]:
+    yield from start(300)
+    activate(bpy.data.objects["Cube"])
+    yield from until_finished()
+    expect("Sphere Quads" in bpy.data.objects, "the result comes")
+    expect([obj.name for obj in bpy.context.selected_objects] == ["Cube"], "and leaves the selection")
+    expect(bpy.context.view_layer.objects.active.name == "Cube", "and the active object")
+
+
+def finished_in_another_mode() -> Iterator[float]:
+    yield from start(300)
+    activate(bpy.data.objects["Cube"])
+    with in_view():
+        bpy.ops.object.mode_set(mode="SCULPT")
+    run = background_run.current()
+    while not run.is_finished:
+        yield 0.1
+    yield 1.0
+    expect("Sphere Quads" not in bpy.data.objects, "in Sculpt Mode nothing is put into the scene")
+    yield from take_picture("6_waiting.png")
+    with in_view():
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield from until_finished()
+    expect("Sphere Quads" in bpy.data.objects, "in Object Mode it is")
+
+
+def undone_meanwhile() -> Iterator[float]:
+    with in_view():
+        bpy.ops.ed.undo_push(message="before")
+        bpy.data.objects["Cube"].location.x = 3
+        bpy.ops.ed.undo_push(message="moved")
+    yield from start(300)
+    with in_view():
+        bpy.ops.ed.undo()
+    yield from until_finished()
+    expect(bpy.data.objects["Cube"].location.x == 0, "the other object's move is undone")
+    expect(bpy.context.view_layer.objects.active.name == "Sphere Quads", "the result comes")
+    with in_view():
+        bpy.ops.ed.undo()
+    yield 0.3
+    expect("Sphere Quads" not in bpy.data.objects, "one undo takes it away")
+    expect(not bpy.data.objects["Sphere"].hide_get() and "Cube" in bpy.data.objects, "and nothing else")
+
+
+def another_file_loaded() -> Iterator[float]:
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    with in_view():
+        bpy.ops.wm.read_homefile()
+    yield 1.0
+    expect(run.worker.wait(5) and not run.has_result, "loading a file ends the run")
+    expect(sorted(bpy.data.objects.keys()) == ["Camera", "Cube", "Light"], "and the file is as it was saved")
+
+
+def new_scene() -> Iterator[float]:
+    """A cube, and a sphere that is active."""
+    with in_view():
+        if bpy.context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for obj in list(bpy.data.objects):
+            bpy.data.objects.remove(obj)
+        for mesh in list(bpy.data.meshes):
+            bpy.data.meshes.remove(mesh)
+        add_cube(segments=12).location.x = 0
+        add_sphere().location.y = 4
+        bpy.ops.ed.undo_push(message="scene")
+    said()
+    yield 0.3
+
+
+def start(quads: int, mode: str = "NEW") -> Iterator[float]:
+    """Remeshes the sphere; a long run is waited for until it tells how far it is."""
+    sphere = bpy.data.objects["Sphere"]
+    sphere.hybrid_quad.quads, sphere.hybrid_quad.result_mode = quads, mode
+    with in_view():
+        activate(sphere)
+        expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"}, "a run begins")
+    run = background_run.current()
+    began = time.monotonic()
+    while quads == LONG_RUN_QUADS and run.worker.fraction == 0 and time.monotonic() - began < 60:
+        yield 0.05
+    expect(not run.is_finished, "and goes on")
+
+
+def pauses() -> Iterator[float]:
+    """Seconds between events, sorted; the last of them is what a person would feel."""
+    yield 0.5
+    found = []
+    for _ in range(40):
+        before = time.monotonic()
+        yield 0.02
+        found.append(time.monotonic() - before)
+    return " ".join(f"{pause:.3f}" for pause in sorted(found)[::-13])
+
+
+def expect_unchanged_after(end) -> Iterator[float]:
+    """Ends the run in some way; the scene stays as it is."""
+    before, run = scene(), background_run.current()
+    began = time.monotonic()
+    end()
+    while background_run.current() is not None and time.monotonic() - began < 30:
+        yield 0.02
+    print(f"ended in {time.monotonic() - began:.2f} s", flush=True)
+    expect(background_run.current() is None and run.worker.wait(5), "the run is over")
+    yield 0.3
+    expect(scene() == before, "nothing has changed")
+
+
+def scene() -> list[tuple[object, ...]]:
+    return sorted(
+        (obj.name, obj.data.name, len(obj.data.vertices), obj.hide_get(), obj.select_get()) for obj in bpy.data.objects
+    )
+
+
+def expect_said(*words: str) -> None:
+    lines = said()
+    found = [line for line in lines if all(word in line for word in words)]
+    expect(bool(found), f"the user reads: {found or lines}")
+
+
+def said() -> list[str]:
+    """What Blender's Info editor lists since the last call, for example ``"Error: ..."``."""
+    window, _ = view()
+    area = next(area for area in window.screen.areas if area.type == "DOPESHEET_EDITOR")
+    area.type = "INFO"
+    try:
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            area.spaces[0].show_report_info = area.spaces[0].show_report_warning = area.spaces[0].show_report_error = (
+                True
+            )
+            bpy.ops.info.select_all(action="SELECT")
+            bpy.ops.info.report_copy()
+            lines = bpy.context.window_manager.clipboard.splitlines()
+            bpy.ops.info.select_all(action="SELECT")
+            bpy.ops.info.report_delete()
+    finally:
+        area.type = "DOPESHEET_EDITOR"
+    return lines
+
+
+if __name__ == "__main__":
+    main(steps())
