@@ -34,7 +34,7 @@ def _start(quads: int) -> background_run.BackgroundRun:
 
 def _start_long() -> background_run.BackgroundRun:
     run = _start(LONG_RUN_QUADS)
-    while run.fraction == 0 and not run.is_finished:
+    while run.fraction == 0 and not run.worker.poll():
         time.sleep(0.01)
     assert not run.is_finished
     return run

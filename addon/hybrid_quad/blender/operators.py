@@ -88,7 +88,7 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
             background_run.forget()
             self.report({"INFO"}, f'Remeshing "{self._run.source.name}" was cancelled; nothing was changed')
             return {"CANCELLED"}
-        if not self._run.is_finished or (self._run.has_result and context.mode != "OBJECT"):
+        if not self._run.worker.poll() or (self._run.has_result and context.mode != "OBJECT"):
             self._display.update(context)
             return {"PASS_THROUGH"}
         background_run.forget()
