@@ -56,8 +56,8 @@ def test_a_python_program_does_it():
 @pytest.mark.skipif(not bpy.app.binary_path, reason="bpy as a module has no program")
 def test_where_there_is_no_python_program_blender_does_it(monkeypatch):
     monkeypatch.setattr(interpreter, "python_programs", lambda: [])
+    assert interpreter.worker_command(host=bpy.app.binary_path)[0] == bpy.app.binary_path
     run = _start(400)
-    assert run.worker._command[0] == bpy.app.binary_path
     expected = run.task.solve()
     assert np.array_equal(run.result().vertices, expected.vertices)
 
