@@ -83,7 +83,7 @@ def working_meanwhile() -> Iterator[float]:
     for value in ("PRESS", "RELEASE"):
         window.event_simulate(type="ESC", value=value, x=other.x + other.width // 2, y=other.y + other.height // 2)
     yield 0.5
-    expect(background_run.current() is run and not run.is_cancelled, "so is Esc in another editor")
+    expect(background_run.current() is run and not run.is_finished, "so is Esc in another editor")
     background_run.forget()
     yield 0.5
 
