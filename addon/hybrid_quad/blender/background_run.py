@@ -57,7 +57,7 @@ class BackgroundRun:
     def status(self) -> str:
         """What it does now, for example ``"Periodic field"``."""
         if self.is_finished:
-            return "Done: go to Object Mode to get it"
+            return "Done: go to Object Mode"
         silence = self.worker.silent_seconds
         text = self.worker.stage.replace("_", " ").capitalize()
         return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
