@@ -48,8 +48,7 @@ def start(tmp_path):
     yield begin
     for run in runs:
         run.cancel()
-        assert run.wait(PATIENCE)
-        assert run.process_id is None or is_gone(run.process_id)
+        wait_until(lambda ended=run.process_id: is_gone(ended))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -59,7 +58,7 @@ def long_run(start):
 
     def begin(**options) -> WorkerRun:
         run = start(wave(quads=500_000, **options))
-        wait_until(lambda: run.fraction > 0 or run.is_finished)
+        wait_until(lambda: run.poll() or run.fraction > 0)
         assert not run.is_finished
         return run
 
@@ -130,7 +129,7 @@ def test_a_request_is_read_as_it_was_written(tmp_path):
 def test_progress_arrives_and_never_falls(start):
     run = start(wave(quads=3000))
     seen = []
-    while not run.is_finished:
+    while not run.poll():
         seen.append((run.fraction, run.stage))
         time.sleep(0.005)
     assert run.has_result
@@ -175,7 +174,8 @@ def test_cancelling_kills_a_busy_worker(long_run):
     run.cancel()
     with pytest.raises(Cancelled, match="cancelled during") as caught:
         run.result()
-    assert caught.value.code == "cancelled" and is_gone(run.process_id)
+    assert caught.value.code == "cancelled" and run.stage.replace("_", " ") in str(caught.value)
+    wait_until(lambda: is_gone(run.process_id))
 
 
 @needs_signals
@@ -185,14 +185,14 @@ def test_cancelling_kills_a_worker_that_hangs(long_run):
     run.cancel()
     with pytest.raises(Cancelled):
         run.result()
-    assert is_gone(run.process_id)
+    wait_until(lambda: is_gone(run.process_id))
 
 
-def test_cancelling_before_the_start_is_heeded(start):
-    run = start(wave(quads=500_000))
-    run.cancel()
-    with pytest.raises(Cancelled):
-        run.result()
+@pytest.mark.skipif(sys.platform != "linux", reason="knows a dead process that nobody asked for")
+def test_a_worker_does_not_wait_for_who_asks(start):
+    run = start(wave(quads=3000))
+    wait_until(lambda: is_gone(run.process_id))  # it has said everything, and nobody has listened
+    assert run.poll() and run.has_result and run.fraction == 1
 
 
 def test_cancelling_what_is_finished_changes_nothing(start):
@@ -212,7 +212,6 @@ def test_the_time_limit_ends_a_run(start):
 def test_the_time_limit_ends_a_worker_that_hangs(start, monkeypatch):
     monkeypatch.setattr(process, "_GRACE", 2.0 - 1000.0)
     run = start(wave(quads=500_000, time_limit=1000.0))
-    wait_until(lambda: run.process_id is not None)
     os.kill(run.process_id, signal.SIGSTOP)
     with pytest.raises(Cancelled, match="did not answer") as caught:
         run.result()
@@ -255,7 +254,7 @@ def test_a_worker_ends_with_the_program_that_wants_its_result(tmp_path):
         sys.path[:0] = {[str(Path(process.__file__).parents[2]), str(Path(__file__).parent)]}
         from test_worker import WorkerRun, wave
         run = WorkerRun(wave(quads=500_000), temporary_folder={str(tmp_path)!r})
-        while run.fraction == 0:
+        while run.fraction == 0 and not run.poll():
             time.sleep(0.01)
         print(run.process_id, flush=True)
         time.sleep({PATIENCE})

@@ -25,8 +25,6 @@ class BackgroundRun:
     source : SourceTrack
     in_place : bool
         Whether the result was to replace the object's mesh when the run began.
-    is_cancelled : bool
-        Whether the user ended it.
     on_forget : callable()
         Called when :func:`current` does not give the run any more.
     """
@@ -35,7 +33,6 @@ class BackgroundRun:
         self.task = task
         self.source = SourceTrack(obj)
         self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
-        self.is_cancelled = False
         self.on_forget: Callable[[], object] = lambda: None
         self.worker = WorkerRun(
             task.request(),
@@ -60,15 +57,10 @@ class BackgroundRun:
     def status(self) -> str:
         """What it does now, for example ``"Periodic field"``."""
         if self.is_finished:
-            return "Done: go to Object Mode to get it"
+            return "Done: go to Object Mode"
         silence = self.worker.silent_seconds
         text = self.worker.stage.replace("_", " ").capitalize()
         return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
-
-    def cancel(self) -> None:
-        """Ends the worker at once, whatever it does."""
-        self.is_cancelled = True
-        self.worker.cancel()
 
     def result(self) -> RemeshResult:
         """The finished run's result; raises what the run raised, see :meth:`.process.WorkerRun.result`."""
@@ -116,6 +108,5 @@ def forget() -> None:
     run, _current = _current, None
     if run is None:
         return
-    if not run.is_finished:
-        run.cancel()
+    run.worker.cancel()
     run.on_forget()

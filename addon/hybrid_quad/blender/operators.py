@@ -14,9 +14,10 @@ from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
+from .background_run import BackgroundRun
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
-from .run_display import RunDisplay, redraw_sidebars
+from .run_display import RunDisplay
 
 _TIMER_SECONDS = 0.1
 
@@ -79,16 +80,13 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Every event goes on to Blender. What another operator or a text field is busy with does not even come here."""
         if background_run.current() is not self._run:  # it was ended from outside
-            return {"CANCELLED"}
+            return {"CANCELLED", "PASS_THROUGH"}
         if _is_escape(context, event) and not self._run.is_finished:
-            self._run.cancel()
-        elif event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        if self._run.is_cancelled:
-            background_run.forget()
-            self.report({"INFO"}, f'Remeshing "{self._run.source.name}" was cancelled; nothing was changed')
+            _drop(self, self._run)
             return {"CANCELLED"}
-        if not self._run.is_finished or (self._run.has_result and context.mode != "OBJECT"):
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if not self._run.worker.poll() or (self._run.has_result and context.mode != "OBJECT"):
             self._display.update(context)
             return {"PASS_THROUGH"}
         background_run.forget()
@@ -100,7 +98,8 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """Blender ends the operator by itself: another file is loaded, or the window closes."""
-        background_run.forget()
+        if background_run.current() is self._run:
+            background_run.forget()
 
     def _end_modal(self) -> None:
         bpy.context.window_manager.event_timer_remove(self._timer)
@@ -160,9 +159,14 @@ class OBJECT_OT_hybrid_quad_cancel(bpy.types.Operator):
     def execute(self, _context: bpy.types.Context) -> set[str]:
         run = background_run.current()
         assert run is not None
-        run.cancel()  # the modal operator tells
-        redraw_sidebars()
+        _drop(self, run)
         return {"FINISHED"}
+
+
+def _drop(operator: bpy.types.Operator, run: BackgroundRun) -> None:
+    """Ends the run as the user wants it: no error."""
+    background_run.forget()
+    operator.report({"INFO"}, f'Remeshing "{run.source.name}" was cancelled; nothing was changed')
 
 
 def message_of(error: BaseException) -> str:

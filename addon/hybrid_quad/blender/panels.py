@@ -59,10 +59,9 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "target_mode")
         column.prop(settings, SIZE_SETTINGS[settings.target_mode])
         layout.prop(settings, "result_mode")
-        if run is None:
-            button = layout.row()
-            button.scale_y = 1.5
-            button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
+        button = layout.row()
+        button.scale_y = 1.5
+        button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
 
 
 class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):

@@ -78,7 +78,7 @@ def _state(obj: bpy.types.Object) -> bytes:
     _add(digest, mesh.polygons, "material_index", 1, np.int32)
     for name in _EDGE_MARKS:
         if name in bpy.types.MeshEdge.bl_rna.properties:
-            _add(digest, mesh.edges, name, 1, np.float32)
+            _add(digest, mesh.edges, name, 1, np.bool_ if name.startswith("use_") else np.float32)
     for attribute in mesh.attributes:
         if attribute.data_type in _ATTRIBUTES and not attribute.name.startswith(_DISPLAY_ATTRIBUTES):
             digest.update(f"{attribute.name} {attribute.domain} {attribute.data_type}".encode())

@@ -1,7 +1,7 @@
 """The program of the worker process: reads one request, solves it, writes the result.
 
-Started by :mod:`.process` with a Python, or with Blender as one; never imported. The first line of its input is an order
-(JSON); the input then stays open for as long as somebody waits for the result. Its output is messages.
+Started by :mod:`.process` with a Python, or with Blender as one; never imported. The last argument names the file of its
+order (JSON). Its input stays open for as long as somebody waits for the result; what it has to say goes to a file.
 """
 
 from __future__ import annotations
@@ -23,42 +23,38 @@ _DIES_FIRST = "500"  # of 1000: where memory runs out, Linux ends this process r
 
 def main() -> None:
     """Does what the order says and ends the process."""
-    control, output = _take_streams()
+    control = _take_input()
     faulthandler.enable()
     _step_back()
-    order = json.loads(_read_line(control))
+    with open(sys.argv[-1], encoding="utf-8") as file:  # noqa: PTH123
+        order = json.load(file)
     sys.path[:] = order["sys_path"]
     messages = _package(order["package"], "worker.messages")
-    lock = threading.Lock()
+    with open(order["messages"], "ab", buffering=0) as output:  # noqa: PTH123
 
-    def send(message: dict[str, Any]) -> None:
-        with lock:
-            _write(output, messages.encode(message))
+        def send(message: dict[str, Any]) -> None:
+            output.write(messages.encode(message))
 
-    try:
-        if order["python"] != sys.implementation.cache_tag:
-            raise ImportError(f"{sys.executable} is {sys.implementation.cache_tag}, not {order['python']}")
-        run = importlib.import_module("hybrid_quad.worker.run")
-        # From here on, as libraries that are being loaded on Windows may wait for what a blocked thread holds.
-        threading.Thread(target=_end_with, args=(control, order["folder"]), daemon=True).start()
-        run.run(order["folder"], send)
-    except BaseException as error:
-        send(messages.error_message(error))
+        try:
+            if order["python"] != sys.implementation.cache_tag:
+                raise ImportError(f"{sys.executable} is {sys.implementation.cache_tag}, not {order['python']}")
+            run = importlib.import_module("hybrid_quad.worker.run")
+            # From here on, as libraries that are being loaded on Windows may wait for what a blocked thread holds.
+            threading.Thread(target=_end_with, args=(control, order["folder"]), daemon=True).start()
+            run.run(order["folder"], send)
+        except BaseException as error:
+            send(messages.error_message(error))
     # Straight out: everything is written, and libraries take their time, or crash, as they are unloaded.
     os._exit(0)
 
 
-def _take_streams() -> tuple[int, int]:
-    """File descriptors of the input and the output, which nothing else can read or write any more.
-
-    Whatever libraries print goes to the error stream.
-    """
-    control, output = os.dup(0), os.dup(1)
+def _take_input() -> int:
+    """File descriptor of the input, which nothing else can read any more."""
+    control = os.dup(0)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.close(nothing)
-    os.dup2(2, 1)
-    return control, output
+    return control
 
 
 def _step_back() -> None:
@@ -87,21 +83,6 @@ def _end_with(control: int, folder: str) -> None:
         pass
     shutil.rmtree(folder, ignore_errors=True)
     os._exit(1)
-
-
-def _read_line(descriptor: int) -> bytes:
-    line = bytearray()
-    while not line.endswith(b"\n"):
-        part = os.read(descriptor, 1)
-        if not part:
-            os._exit(1)
-        line += part
-    return bytes(line)
-
-
-def _write(descriptor: int, data: bytes) -> None:
-    while data:
-        data = data[os.write(descriptor, data) :]
 
 
 main()

@@ -39,6 +39,7 @@ def worker_command(host: str = "", candidates: Sequence[Path] | None = None) -> 
             "1",
             "--python",
             str(CHILD),
+            "--",
         ]
     raise FileNotFoundError("no Python program was found that could do the work in a process of its own")
 

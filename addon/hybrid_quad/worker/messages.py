@@ -69,7 +69,7 @@ def encode(message: Message) -> bytes:
 
 
 def decode(line: bytes) -> Message | None:
-    """The message in a line; None where it is none, as when a library prints something."""
+    """The message in a line; None where it is none, as a line of another program."""
     try:
         message = json.loads(line)
     except ValueError:

@@ -1,18 +1,22 @@
-"""A run in a process of its own, seen from outside."""
+"""A run in a process of its own, seen from outside.
+
+No thread waits for it: Blender's Python is not made for threads that outlive a script. Whoever wants to know how far the
+run is asks; the worker writes what it has to say into a file, so that it never waits for anybody either.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO
+from typing import BinaryIO
 
 from ..core.errors import Cancelled
 from ..core.remesh import RemeshResult
@@ -25,30 +29,34 @@ from .run import REQUEST, RESULT
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
-_GRACE = 5.0  # seconds past its time limit after which a run that should have ended itself is ended
-_LEAVING = 5.0  # seconds that a killed process gets to be gone
+_ORDER = "order.json"
+_MESSAGES = "messages.jsonl"
 _LOG = "log.txt"
+
+_GRACE = 5.0  # seconds past its time limit after which a run that should have ended itself is ended
+_LEAVING = 1.0  # seconds that a killed process gets to be gone
+_INTERVAL = 0.01  # seconds between two looks while somebody waits
 _LOG_SHOWN = 4000  # characters
 _FIRST_STAGE = "start"
 
 
 class WorkerRun:
-    """Solves a request in another process; a thread waits for it.
-
-    Nothing here blocks but :meth:`wait` and :meth:`result`: the request is written, and the result read, by the thread.
+    """Solves a request in another process.
 
     Attributes
     ----------
     stage : str
-        What runs now.
+        What ran when :meth:`poll` looked last.
     fraction : float
-        How much of the whole is done, 0 to 1.
+        How much of the whole was done then, 0 to 1.
+    is_finished : bool
+        Whether there was a result or an error then.
     """
 
     def __init__(
         self, request: RemeshRequest, *, temporary_folder: str | None = None, command: Sequence[str] | None = None
     ) -> None:
-        """Starts the process.
+        """Writes the request and starts the process.
 
         Parameters
         ----------
@@ -56,31 +64,33 @@ class WorkerRun:
         temporary_folder : str, optional
             Where the run's own folder is made, which is private and removed with the run; by default the system's.
         command : sequence of str, optional
-            Program and arguments, by default :func:`.interpreter.worker_command`.
+            Program and arguments, by default :func:`.interpreter.worker_command`. The order's file is added.
+
+        Raises
+        ------
+        OSError
+            If files cannot be written or the program cannot be started.
         """
         self.stage = _FIRST_STAGE
         self.fraction = 0.0
-        self._request = request
-        self._temporary_folder = temporary_folder
-        self._command = list(worker_command() if command is None else command)
-        self._news = time.monotonic()
-        self._lock = threading.Lock()
-        self._process: subprocess.Popen[bytes] | None = None
-        self._stopped: Cancelled | None = None
+        self.is_finished = False
+        self._error: Exception | None = None
         self._result: RemeshResult | None = None
-        self._error: BaseException | None = None
-        self._thread = threading.Thread(target=self._run, name="hybrid_quad worker", daemon=True)
-        self._thread.start()
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether there is a result or an error."""
-        return not self._thread.is_alive()
+        self._limit = request.options.time_limit
+        self._began = self._news = time.monotonic()
+        self._folder = Path(tempfile.mkdtemp(prefix="hybrid_quad_", dir=temporary_folder))
+        try:
+            request.save(self._folder / REQUEST)
+            self._messages: BinaryIO = _created(self._folder / _MESSAGES)
+            self._process = _start(worker_command() if command is None else command, self._folder)
+        except BaseException:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            raise
 
     @property
     def has_result(self) -> bool:
         """Whether the run has ended well."""
-        return self.is_finished and self._stopped is None and self._error is None
+        return self._result is not None
 
     @property
     def silent_seconds(self) -> float:
@@ -88,39 +98,54 @@ class WorkerRun:
         return time.monotonic() - self._news
 
     @property
-    def process_id(self) -> int | None:
-        """Of the worker, once it is started."""
-        return None if self._process is None else self._process.pid
+    def process_id(self) -> int:
+        """Of the worker."""
+        return self._process.pid
+
+    def poll(self) -> bool:
+        """Looks how far the run is, without waiting; whether it has ended."""
+        if self.is_finished:
+            return True
+        # First, so that what a process said before it ended is read.
+        has_ended = self._process.poll() is not None
+        last = self._read_messages()
+        if last is not None:
+            self._take(last)
+        elif has_ended:
+            self._end(WorkerDied(self.stage, self._process.returncode, self._end_of_log()))
+        elif self._limit is not None and time.monotonic() - self._began > self._limit + _GRACE:
+            text = f"the time limit of {self._limit:g} s is over, and the run did not answer any more during "
+            self._end(Cancelled(text + self._stage_in_words, "time_limit"))
+        return self.is_finished
 
     def cancel(self) -> None:
-        """Kills the worker, whatever it does, and does not wait; :meth:`result` then raises Cancelled.
+        """Kills the worker, whatever it does; :meth:`result` then raises Cancelled.
 
         A run that has ended before stays as it is.
         """
-        self._stop(Cancelled(f"cancelled during {self._stage_in_words}"))
+        if not self.is_finished:
+            self._end(Cancelled(f"cancelled during {self._stage_in_words}"))
 
     def wait(self, timeout: float | None = None) -> bool:
         """Returns when the run has ended, or after some seconds; whether it has."""
-        self._thread.join(timeout)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while not self.poll() and (deadline is None or time.monotonic() < deadline):
+            time.sleep(_INTERVAL)
         return self.is_finished
 
     def result(self) -> RemeshResult:
-        """The finished run's result.
+        """The run's result; waits for it.
 
         Raises
         ------
-        InputError, InternalError, ValueError, ImportError, MemoryError
+        InputError, InternalError, ValueError, ImportError, MemoryError, OSError
             What the run raised.
         Cancelled
             After :meth:`cancel`, or at a limit of time or memory.
         WorkerDied
             If the process ended by itself.
-        OSError
-            If it could not be started, or handed its data.
         """
         self.wait()
-        if self._stopped is not None:
-            raise self._stopped
         if self._error is not None:
             raise self._error
         assert self._result is not None
@@ -130,74 +155,14 @@ class WorkerRun:
     def _stage_in_words(self) -> str:
         return self.stage.replace("_", " ")
 
-    def _stop(self, reason: Cancelled) -> None:
-        with self._lock:
-            if self._stopped is None and self._result is None and self._error is None:
-                self._stopped = reason
-            if self._process is not None:
-                self._process.kill()
-
-    def _run(self) -> None:
-        try:
-            with tempfile.TemporaryDirectory(
-                prefix="hybrid_quad_", dir=self._temporary_folder, ignore_cleanup_errors=True
-            ) as folder:
-                self._result = self._solve(Path(folder))
-        except BaseException as error:  # carried over to the thread that asks
-            self._error = error
-
-    def _solve(self, folder: Path) -> RemeshResult:
-        self._request.save(folder / REQUEST)
-        with (folder / _LOG).open("wb") as log:
-            process = self._start(log)
-        limit = self._request.options.time_limit
-        timer = threading.Timer(limit + _GRACE, self._give_up, [limit]) if limit else None
-        if timer is not None:
-            timer.daemon = True
-            timer.start()
-        try:
-            last = self._converse(process, folder)
-            if last is None:
-                raise WorkerDied(self.stage, _status_of(process), _end_of_log(folder))
-            if last["event"] == "error":
-                error = error_of(last)
-                if isinstance(error, MemoryError):
-                    raise MemoryError(f"during {self._stage_in_words}") from error
-                raise error
-            return RemeshResult(**load_fields(folder / RESULT))
-        finally:
-            if timer is not None:
-                timer.cancel()
-            _dispose(process)
-
-    def _start(self, log: IO[bytes]) -> subprocess.Popen[bytes]:
-        with self._lock:
-            if self._stopped is not None:
-                raise self._stopped
-            self._process = subprocess.Popen(
-                self._command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                creationflags=_creation_flags(),
-            )
-            return self._process
-
-    def _converse(self, process: subprocess.Popen[bytes], folder: Path) -> Message | None:
-        """Gives the order and listens; the worker's last word, or None if it ended without one."""
-        assert process.stdin is not None and process.stdout is not None
-        order = {
-            "folder": str(folder),
-            "package": str(PACKAGE),
-            "sys_path": [os.path.abspath(path) for path in sys.path],
-            "python": sys.implementation.cache_tag,
-        }
-        try:
-            process.stdin.write(json.dumps(order).encode() + b"\n")
-            process.stdin.flush()
-        except OSError:  # it is dead already; the exit status tells more
-            return None
-        for line in process.stdout:
+    def _read_messages(self) -> Message | None:
+        """Takes notice of progress; the worker's last word, if it has been said."""
+        while True:
+            place = self._messages.tell()
+            line = self._messages.readline()
+            if not line.endswith(b"\n"):  # still being written
+                self._messages.seek(place)
+                return None
             message = decode(line)
             if message is None:
                 continue
@@ -205,36 +170,63 @@ class WorkerRun:
                 return message
             self._news = time.monotonic()
             self.stage, self.fraction = str(message["stage"]), float(message["fraction"])
-        return None
 
-    def _give_up(self, limit: float) -> None:
-        text = (
-            f"the time limit of {limit:g} s is over, and the run did not answer any more during {self._stage_in_words}"
+    def _take(self, last: Message) -> None:
+        """Ends the run with what its last word announces."""
+        if last["event"] == "error":
+            error = error_of(last)
+            if isinstance(error, MemoryError):
+                error = MemoryError(f"during {self._stage_in_words}")
+            self._end(error)
+            return
+        try:
+            self._result = RemeshResult(**load_fields(self._folder / RESULT))
+        except Exception as error:  # for example a disk that is full
+            self._end(error)
+        else:
+            self._end(None)
+
+    def _end(self, error: Exception | None) -> None:
+        """Makes sure that the process is gone, and its files with it."""
+        self._error = error
+        self.is_finished = True
+        self._process.kill()
+        if self._process.stdin is not None:
+            self._process.stdin.close()
+        # One that the system holds back dies later, and is asked for when the next one is started.
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_LEAVING)
+        self._messages.close()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _end_of_log(self) -> str:
+        return (self._folder / _LOG).read_text(errors="replace")[-_LOG_SHOWN:]
+
+
+def _created(path: Path) -> BinaryIO:
+    """An empty file, open for reading."""
+    path.touch()
+    return path.open("rb")
+
+
+def _start(command: Sequence[str], folder: Path) -> subprocess.Popen[bytes]:
+    order = {
+        "folder": str(folder),
+        "messages": str(folder / _MESSAGES),
+        "package": str(PACKAGE),
+        "sys_path": [os.path.abspath(path) for path in sys.path],
+        "python": sys.implementation.cache_tag,
+    }
+    (folder / _ORDER).write_text(json.dumps(order))
+    with (folder / _LOG).open("wb") as log:
+        # Nothing is ever written to the input: that it is closed tells the worker that nobody is there any more.
+        return subprocess.Popen(
+            [*command, str(folder / _ORDER)],
+            stdin=subprocess.PIPE,
+            stdout=log,
+            stderr=log,
+            creationflags=_creation_flags(),
         )
-        self._stop(Cancelled(text, "time_limit"))
-
-
-def _status_of(process: subprocess.Popen[bytes]) -> int:
-    """Exit status of a process that has closed its output; what does not end then is killed."""
-    try:
-        return process.wait(_LEAVING)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        return process.wait()
-
-
-def _dispose(process: subprocess.Popen[bytes]) -> None:
-    """Makes sure that a process is gone and its pipes are closed."""
-    process.kill()
-    for pipe in (process.stdin, process.stdout):
-        if pipe is not None:
-            with contextlib.suppress(OSError):  # what could not be written any more
-                pipe.close()
-    process.wait()
-
-
-def _end_of_log(folder: Path) -> str:
-    return (folder / _LOG).read_text(errors="replace")[-_LOG_SHOWN:]
 
 
 def _creation_flags() -> int:
