@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from types import FrameType
 
 from .. import __version__
+from ..batch_jobs.job_file import JobFileError
+from ..batch_jobs.run_asset import BatchFault
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
-from . import check_command, exit_codes, remesh_command
+from . import batch_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
 
 
@@ -39,7 +41,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         say(f"{options.input}: {error}{describe_elements(error)} [{error.code}]")
         return exit_codes.CANNOT_REMESH
-    except (MeshFileError, UsageProblem, ImportError) as error:  # ImportError: an incomplete installation
+    except (
+        MeshFileError,
+        UsageProblem,
+        BatchFault,
+        JobFileError,
+        ImportError,
+    ) as error:  # ImportError: an incomplete installation
         say(str(error))
         return exit_codes.WRONG_USAGE
     except (Cancelled, KeyboardInterrupt) as error:
@@ -76,4 +84,5 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     remesh_command.add_to(commands)
     check_command.add_to(commands)
+    batch_command.add_to(commands)
     return parser
