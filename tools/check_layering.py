@@ -5,8 +5,8 @@
 
 C++: a folder of native/hybrid_quad includes only itself and folders that stand before it in native/CMakeLists.txt; of
 a stage, others see only its public header, named like its folder, and those listed in PUBLIC_HEADERS.
-Python: core/ imports neither bpy nor batch_jobs/ nor cli/ nor blender/; batch_jobs/ neither bpy nor cli/ nor blender/; cli/ imports neither bpy nor blender/; of the rest, only
-blender/ and batch.py import bpy.
+Python: core/ imports neither bpy nor batch_jobs/, cli/, blender/; batch_jobs/ neither bpy nor cli/, blender/; cli/ neither
+bpy nor blender/; of the rest, only blender/ and batch.py import bpy.
 
 Prints each violation with its file and line; exit status 1 if there is one.
 """

@@ -24,7 +24,7 @@ from .worker_process import Outcome, run_process
 
 _LOG = "messages.txt"
 _HASH = "job_hash"  # in the work folder: the job that its files are of
-_STATUS_OF_EXIT = {1: "input_error", 2: "wrong_usage", 3: "internal_error"}
+_STATUS_OF_EXIT = {2: "wrong_usage", 3: "internal_error"}  # where there is no report
 
 
 class BatchFault(Exception):

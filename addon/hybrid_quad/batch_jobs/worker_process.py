@@ -16,6 +16,7 @@ if sys.platform == "linux":
 
 _PAUSE = 0.2  # seconds between two looks at whether to stop
 _PATIENCE = 5.0  # seconds that a process gets to end by itself
+_GRACE = 10.0  # seconds past its time limit, and half of that again, before it is killed
 _MESSAGES_KEPT = 4000  # characters
 
 PACKAGE_PARENT = Path(__file__).resolve().parents[2]
@@ -76,7 +77,7 @@ def run_process(
         If it cannot be started.
     """
     started = time.monotonic()
-    deadline = started + 1.5 * time_limit + 10 if time_limit else float("inf")
+    deadline = started + 1.5 * time_limit + _GRACE if time_limit else float("inf")
     with log.open("wb") as file:
         process = subprocess.Popen(
             list(command),
