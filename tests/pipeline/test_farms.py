@@ -53,6 +53,14 @@ def assert_all_done(out, count):
     assert not (out / WORK_FOLDER).exists()
 
 
+def finished(out):
+    return len(list(out.glob("*.hq.json")))
+
+
+def running(out):
+    return list(out.glob(f"{WORK_FOLDER}/*/messages.txt"))
+
+
 def wait_for(condition, seconds=120):
     deadline = time.monotonic() + seconds
     while not condition():
@@ -90,7 +98,7 @@ def test_a_dask_cluster_that_loses_a_worker(assets, tmp_path, cluster):
     batch = subprocess.Popen([*words, "--no-pictures", "--quiet", "--dask", address], env=ENVIRONMENT)
     try:
         # In the middle of a run of its own: each worker has one thread, so two runs at once are one of each.
-        wait_for(lambda: len(list(out.glob("*.hq.json"))) > 5 and len(list(out.glob(f"{WORK_FOLDER}/*/messages.txt"))) == 2)
+        wait_for(lambda: batch.poll() is not None or (finished(out) > 5 and len(running(out)) == 2))
         workers[0].kill()
         early = {path: path.stat().st_ino for path in out.glob("*.hq.json")}
         assert len(early) < count

@@ -50,7 +50,7 @@ def run_on_dask(assets: Sequence[Asset], plan: BatchPlan, address: str) -> Gener
         _require_same_version(client)
         remaining = iter(assets)
         waiting: dict[str, Asset] = {}
-        running: Any = as_completed()
+        running: Any = as_completed(loop=client.loop)
 
         def submit(asset: Asset) -> None:
             future = client.submit(
@@ -86,6 +86,7 @@ def _ahead(client: Any) -> int:
 
 def _require_same_version(client: Any) -> None:
     try:
+        client.wait_for_workers(1, timeout=_PATIENCE)
         versions = client.run(_version_here)
     except Exception as error:
         raise BatchFault(f"the workers of the Dask cluster cannot use hybrid_quad: {error}") from error

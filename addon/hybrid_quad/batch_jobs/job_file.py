@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -64,7 +65,7 @@ def write_job_file(path: Path, assets: Iterable[Asset]) -> None:
 
 
 def _rows_of_csv(path: Path, text: str) -> list[tuple[str, dict[str, Any]]]:
-    reader = csv.DictReader(text.splitlines(), skipinitialspace=True, restkey="")
+    reader = csv.DictReader(io.StringIO(text, newline=""), skipinitialspace=True, restkey="")
     return [(f"line {reader.line_num}", {(key or "").strip(): value for key, value in row.items()}) for row in reader]
 
 
