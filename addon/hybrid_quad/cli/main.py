@@ -11,8 +11,6 @@ from collections.abc import Sequence
 from types import FrameType
 
 from .. import __version__
-from ..batch_jobs.job_file import JobFileError
-from ..batch_jobs.run_asset import BatchFault
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
 from . import batch_command, check_command, exit_codes, remesh_command
@@ -41,13 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         say(f"{options.input}: {error}{describe_elements(error)} [{error.code}]")
         return exit_codes.CANNOT_REMESH
-    except (
-        MeshFileError,
-        UsageProblem,
-        BatchFault,
-        JobFileError,
-        ImportError,
-    ) as error:  # ImportError: an incomplete installation
+    except (MeshFileError, UsageProblem, ImportError) as error:  # ImportError: an incomplete installation
         say(str(error))
         return exit_codes.WRONG_USAGE
     except (Cancelled, KeyboardInterrupt) as error:
