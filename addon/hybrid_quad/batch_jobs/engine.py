@@ -10,6 +10,8 @@ from .asset import Asset, BatchPlan
 from .asset_status import AssetStatus
 from .run_asset import run_asset
 
+# Seconds. A signal that comes just as the main thread falls asleep is not heeded before it wakes up.
+_LOOK = 0.5
 _AHEAD = 4  # assets for each job that wait their turn
 
 
@@ -34,7 +36,7 @@ def run_locally(assets: Sequence[Asset], plan: BatchPlan, jobs: int) -> Generato
                     pending.add(pool.submit(run_asset, asset, plan, stop.is_set))
                 if not pending:
                     return
-                done, pending = wait(pending, return_when=FIRST_COMPLETED)
+                done, pending = wait(pending, _LOOK, FIRST_COMPLETED)
                 for future in done:
                     status = future.result()
                     if status is not None:
