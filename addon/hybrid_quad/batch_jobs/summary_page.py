@@ -92,6 +92,7 @@ def _rows(line: Line) -> list[tuple[str, str]]:
         ("scaled Jacobian, worst", _number(figures["scaled_jacobian_min"], 3)),
         ("distance, % of diagonal", _number(figures["hausdorff_percent"], 3)),
         ("of features, %", _number(figures["feature_hausdorff_percent"], 3)),
+        *([("flawed quads", str(figures["flawed_quads"]))] if figures["flawed_quads"] else []),
         ("seconds", f"{line.status.seconds:.1f}"),
     ]
 
