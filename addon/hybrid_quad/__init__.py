@@ -12,6 +12,7 @@ from .core.errors import Cancelled, InputError, InternalError
 
 if TYPE_CHECKING:
     from .core.check import Defect, check
+    from .core.mesh_objects import mesh_arrays
     from .core.options import RemeshOptions
     from .core.remesh import RemeshResult, remesh
     from .core.strokes import Stroke, guides_from_strokes
@@ -38,6 +39,7 @@ __all__ = [
     "Stroke",
     "check",
     "guides_from_strokes",
+    "mesh_arrays",
     "remesh",
 ]
 
@@ -46,6 +48,7 @@ __all__ = [
 _MODULE_OF = {
     "Defect": "check",
     "check": "check",
+    "mesh_arrays": "mesh_objects",
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",

@@ -45,11 +45,26 @@ python_environment() {
   fi
   local stamp=$VENV/.hybrid_quad_requirements
   if [ ! -e "$stamp" ] || [ "$ROOT/pyproject.toml" -nt "$stamp" ]; then
-    say "installing Python packages into .venv: scikit-build-core pybind11 numpy meshio tqdm pytest pytest-timeout"
+    say "installing Python packages into .venv: scikit-build-core pybind11 numpy meshio tqdm pytest, and for batches pillow distributed openjd-cli"
     "$VENV/bin/pip" install -q "scikit-build-core>=0.10" "pybind11>=2.12" "numpy>=1.24" "meshio>=5.3" "tqdm>=4.60" \
-      "pytest>=7" "pytest-timeout>=2.1"
+      "pytest>=7" "pytest-timeout>=2.1" "pillow>=9.4" "distributed>=2024.1" "openjd-cli>=0.8,<1"
     touch "$stamp"
   fi
+}
+
+# developer_tools: ruff, mypy and clang-format in .venv, in the versions that pyproject.toml pins.
+developer_tools() {
+  local wanted there tool missing=()
+  wanted=$("$VENV/bin/python" -c '
+import sys, tomllib
+print(*tomllib.load(open(sys.argv[1], "rb"))["project"]["optional-dependencies"]["dev"])' "$ROOT/pyproject.toml")
+  there=$("$VENV/bin/pip" list --format=freeze)
+  for tool in $wanted; do
+    grep -qxF "$tool" <<<"$there" || missing+=("$tool")
+  done
+  [ ${#missing[@]} = 0 ] && return
+  say "installing Python packages into .venv: ${missing[*]}"
+  "$VENV/bin/pip" install -q "${missing[@]}"
 }
 
 # build_package: hybrid_quad in .venv, and its compiled part beside the add-on's sources, where Blender finds it.

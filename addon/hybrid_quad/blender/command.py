@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import math
 import os
 import signal
@@ -14,11 +15,13 @@ from typing import Any
 import bpy
 
 from ..cli import exit_codes
+from ..cli.main import main as package_main
 from ..cli.messages import describe_defect, describe_symmetry
-from ..core import report
+from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
 from ..core.options import AXES, RemeshOptions
+from ..core.parent_process import end_with_stdin
 from ..core.strokes import KINDS
 from .edge_marks import SOURCES
 from .operators import message_of
@@ -47,17 +50,28 @@ def unregister() -> None:
 def main(arguments: Sequence[str]) -> int:
     """Remeshes one object of the open file, saves the file under another name, and returns the exit status.
 
-    Nothing is written unless the run succeeds, except a report that says why it did not.
+    Nothing is written unless the run succeeds, except a report that says why it did not. Where the first word is ``batch``,
+    the rest is that of the command ``hybrid-quad batch``.
 
     Parameters
     ----------
     arguments : sequence of str
         See ``--help``.
     """
+    if arguments[:1] == ["batch"]:
+        program = bpy.app.binary_path  # none where Blender is a Python module
+        return package_main([*arguments, *(["--blender", program] if program and "--blender" not in arguments else [])])
     try:
         options = _parser().parse_args(list(arguments))
     except SystemExit as stop:  # argparse has printed usage or help
         return int(stop.code or 0)
+    if options.end_with_stdin:
+        end_with_stdin()
+    if options.list_objects:
+        return list_objects(options.list_objects)
+    if not (options.object and options.output):
+        print("hybrid_quad: --object and --output are needed", file=sys.stderr)
+        return exit_codes.WRONG_USAGE
     asked: RemeshOptions | None = None
     try:
         with _interruptible():
@@ -69,8 +83,13 @@ def main(arguments: Sequence[str]) -> int:
             result = task.solve(progress=_printer(options.quiet))
             target = place_result(bpy.context, obj, task, result)
             record = {**result.report, "object": target.name, "source_object": obj.name}
+            if options.picture and picture.can_draw():
+                picture.write_picture(options.picture, result.vertices, result.quads)
             _write_report(options.report, record)
-            _save(options.output)
+            if options.only_result:
+                _save_object(options.output, target)
+            else:
+                _save(options.output)
     except Exception as error:
         return _fail(options, asked, error)
     except KeyboardInterrupt:
@@ -92,8 +111,14 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Exit status: 0 done; 1 the object cannot be remeshed; 2 wrong usage; 3 internal error; 4 cancelled or "
         "time or memory limit. The output is written only with 0.",
     )
-    parser.add_argument("--object", required=True, metavar="NAME", help="mesh object to remesh")
-    parser.add_argument("--output", required=True, metavar="OUT.blend", help="file to save the result to")
+    parser.add_argument("--object", metavar="NAME", help="mesh object to remesh")
+    parser.add_argument("--output", metavar="OUT.blend", help="file to save the result to")
+    parser.add_argument(
+        "--only-result", action="store_true", help="save only the object that has the result, for linking or appending"
+    )
+    parser.add_argument(
+        "--list-objects", metavar="FILE.json", help="only write the names of visible mesh objects there"
+    )
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quads", type=_positive_integer, metavar="N", help="number of quads to aim at")
     size.add_argument(
@@ -176,8 +201,31 @@ def _parser() -> argparse.ArgumentParser:
         help="stop with status 4 where Blender takes more memory",
     )
     parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
+    parser.add_argument(
+        "--picture",
+        metavar="FILE.png",
+        help="draw a small picture of the result there, if Blender has Pillow",
+    )
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
+    parser.add_argument(
+        "--end-with-stdin",
+        action="store_true",
+        help="end as soon as the standard input is closed, as by a parent's end",
+    )
     return parser
+
+
+def list_objects(path: str) -> int:
+    """Writes the names of the visible mesh objects with faces as JSON, and returns the exit status."""
+    objects = (obj for obj in bpy.context.view_layer.objects if obj.type == "MESH" and obj.library is None)
+    names = sorted(obj.name for obj in objects if not obj.hide_get() and len(obj.data.polygons))
+    try:
+        with replacing(path) as file:
+            file.write(json.dumps(names).encode())
+    except MeshFileError as error:
+        print(f"hybrid_quad: {error}", file=sys.stderr)
+        return exit_codes.WRONG_USAGE
+    return exit_codes.OK
 
 
 def _positive_integer(text: str) -> int:
@@ -326,6 +374,16 @@ def _save(path: str) -> None:
         raise MeshFileError(f"{path}: {str(error).strip()}") from error
     finally:
         preferences.save_version = versions
+
+
+def _save_object(path: str, obj: bpy.types.Object) -> None:
+    """Writes a Blender file that holds an object and what it needs, whole or not at all."""
+    part = f"{os.path.abspath(path)}.part.blend"
+    try:
+        bpy.data.libraries.write(part, {obj}, fake_user=True, compress=True)
+        os.replace(part, path)
+    except (OSError, RuntimeError) as error:
+        raise MeshFileError(f"{path}: {error}") from error
 
 
 def _write_report(path: str | None, record: dict[str, Any]) -> None:

@@ -9,10 +9,11 @@ import time
 from typing import Any
 
 from .. import __version__
-from ..core import mesh_io, report
+from ..core import mesh_io, picture, report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_arrays import FloatArray
 from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
+from ..core.parent_process import end_with_stdin
 from ..core.remesh import RemeshResult, remesh_with_options
 from ..core.strokes import KINDS, Stroke, joined_lines
 from ..core.validation import violations
@@ -32,6 +33,21 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("input", metavar="IN", help="mesh file: .obj, .ply, .stl or .off")
     parser.add_argument("output", metavar="OUT", help="result: .obj, .ply or .off")
+    add_settings(parser)
+    parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
+    parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there (needs Pillow)")
+    parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
+    parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
+    parser.add_argument(
+        "--end-with-stdin",
+        action="store_true",
+        help="end as soon as the standard input is closed, as it is when the program that holds its other end dies",
+    )
+    parser.set_defaults(run=run)
+
+
+def add_settings(parser: argparse._ActionsContainer) -> None:
+    """Adds what can be asked of a run."""
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quads", type=int, metavar="N", help="number of quads to aim at (default 5000)")
     size.add_argument("--edge-length", type=float, metavar="L", help="length of the quads' edges instead")
@@ -80,35 +96,35 @@ def add_to(commands: Any) -> None:
         type=float,
         default=RemeshOptions.field_smoothness,
         metavar="S",
-        help="0: edges follow the surface's bends, 1: as few irregular vertices as can be (default %(default)s)",
+        help=f"0: edges follow the surface's bends, 1: as few irregular vertices as can be (default {RemeshOptions.field_smoothness})",
     )
     parser.add_argument(
         "--adaptivity",
         type=float,
         default=RemeshOptions.adaptivity,
         metavar="A",
-        help="0: edges of even length, 1: as short as the curvature asks for (default %(default)s)",
+        help=f"0: edges of even length, 1: as short as the curvature asks for (default {RemeshOptions.adaptivity})",
     )
     parser.add_argument(
         "--narrow-quads",
         type=int,
         choices=(1, 2),
         default=RemeshOptions.narrow_quads,
-        help="rows of quads that narrow strips between features get at least (default %(default)s)",
+        help=f"rows of quads that narrow strips between features get at least (default {RemeshOptions.narrow_quads})",
     )
     parser.add_argument(
         "--anisotropy",
         type=float,
         default=RemeshOptions.anisotropy,
         metavar="R",
-        help="stretch quads by at most R along the direction in which the surface bends less (default %(default)s)",
+        help=f"stretch quads by at most R along the direction in which the surface bends less (default {RemeshOptions.anisotropy})",
     )
     parser.add_argument(
         "--size-fidelity",
         type=float,
         default=RemeshOptions.size_fidelity,
         metavar="F",
-        help="where sizes vary, 0: few irregular vertices, 1: the asked sizes (default %(default)s)",
+        help=f"where sizes vary, 0: few irregular vertices, 1: the asked sizes (default {RemeshOptions.size_fidelity})",
     )
     parser.add_argument(
         "--fit-limit",
@@ -138,7 +154,7 @@ def add_to(commands: Any) -> None:
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
-        help="how the periodic field is found; eigen is the slow reference (default %(default)s)",
+        help=f"how the periodic field is found; eigen is the slow reference (default {SOLVERS[0]})",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="same seed, same result (default 0)")
     parser.add_argument(
@@ -148,21 +164,23 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--memory-limit", type=float, metavar="MB", help="stop with status 4 where more memory is taken"
     )
-    parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
-    parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
-    parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Remeshes, checks the result, writes it, and returns the exit status; failures are raised."""
     started = time.monotonic()
+    if arguments.end_with_stdin:
+        end_with_stdin()
     options = _options(arguments)
     mesh_io.check_writable(arguments.output)
-    if arguments.report:
-        mesh_io.check_place(arguments.report)
+    for path in filter(None, (arguments.report, arguments.picture)):
+        mesh_io.check_place(path)
+    if arguments.picture and not picture.can_draw():
+        raise UsageProblem("--picture needs Pillow: pip install 'hybrid-quad[pictures]'")
     try:
         result = _remesh(arguments, options, started)
+        if arguments.picture:
+            picture.write_picture(arguments.picture, result.vertices, result.quads)
     except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:
         _write_failure(arguments, options, error)
         raise

@@ -1,0 +1,53 @@
+"""Progress of a batch on the error stream."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from ..batch_jobs.asset_status import OK, AssetStatus
+from .messages import say
+
+if TYPE_CHECKING:
+    from tqdm import tqdm
+
+
+class BatchProgress:
+    """Receives the status of each asset while it is used as a context.
+
+    A terminal shows a bar, and above it a line for every asset that failed; a log file gets a line for every asset.
+    """
+
+    def __init__(self, total: int, quiet: bool) -> None:
+        self._total, self._quiet = total, quiet
+        self._counts: Counter[str] = Counter()
+        self._bar: tqdm[None] | None = None
+        if not quiet and sys.stderr.isatty():
+            from tqdm import tqdm  # takes longer to load than all else here
+
+            self._bar = tqdm(total=total, file=sys.stderr, unit="asset", dynamic_ncols=True)
+
+    def __enter__(self) -> BatchProgress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def update(self, status: AssetStatus) -> None:
+        """Counts an asset."""
+        self._counts[status.status] += 1
+        message = f"{status.asset}: {status.status}{': ' + status.message if status.message else ''}"
+        if self._bar is not None:
+            if status.status != OK:
+                self._bar.write(f"hybrid-quad: {message}", file=sys.stderr)
+            self._bar.set_postfix({name: times for name, times in self._counts.items()}, refresh=False)
+            self._bar.update()
+        elif not self._quiet:
+            done = sum(self._counts.values())
+            quads = f", {status.report.get('quads')} quads, {status.seconds:.1f} s" if status.status == OK else ""
+            say(f"[{done}/{self._total}] {message}{quads}")

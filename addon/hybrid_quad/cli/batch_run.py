@@ -1,0 +1,141 @@
+"""A batch from the words of its command to the summary."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+from collections.abc import Generator, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..batch_jobs import summary, summary_page
+from ..batch_jobs.asset import WORK_FOLDER, Asset, BatchPlan
+from ..batch_jobs.asset_range import in_range
+from ..batch_jobs.asset_status import AssetStatus
+from ..batch_jobs.blend_objects import object_lister
+from ..batch_jobs.engine import run_locally
+from ..batch_jobs.job_file import JobFileError, write_job_file
+from ..batch_jobs.job_list import list_assets
+from ..batch_jobs.run_asset import BatchFault
+from ..batch_jobs.settings import KINDS, canonical
+from ..core import native, picture
+from ..core.options import usable_threads
+from . import exit_codes, remesh_command
+from .batch_progress import BatchProgress
+from .messages import say
+
+_HOUR = 3600.0
+
+
+def run_batch(arguments: argparse.Namespace) -> int:
+    """Runs what is left to run, writes the summary and returns the exit status.
+
+    Raises
+    ------
+    UsageProblem
+        If the list of assets cannot be used, or the machine does not let the batch run.
+    """
+    try:
+        return _run(arguments)
+    except (BatchFault, JobFileError) as error:
+        raise remesh_command.UsageProblem(str(error)) from error
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    plan = _plan(arguments)
+    assets = list_assets(arguments.inputs, _defaults(arguments), plan, object_lister(plan))
+    if arguments.write_list:
+        write_job_file(Path(arguments.write_list), assets)
+        if not arguments.quiet:
+            say(f"{arguments.write_list}: {len(assets)} assets")
+        return exit_codes.OK
+    chosen = assets if arguments.range is None else _chosen(assets, arguments.range)
+    interrupted = False
+    if not arguments.summary_only:
+        native.load()  # no worker could do without it
+        interrupted = not _run_all(chosen, plan, arguments)
+    if arguments.range is not None:
+        return exit_codes.CANCELLED if interrupted else exit_codes.OK
+    return _summarize(assets, plan, arguments, interrupted)
+
+
+def _plan(arguments: argparse.Namespace) -> BatchPlan:
+    output = Path(arguments.output).absolute()
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BatchFault(f"{output}: {error.strerror}") from error
+    if not os.access(output, os.W_OK):
+        raise BatchFault(f"{output}: cannot be written to")
+    can_draw = picture.can_draw()
+    if not (can_draw or arguments.no_pictures or arguments.quiet):
+        say("pictures of results are left out: they need Pillow (pip install 'hybrid-quad[pictures]')")
+    return BatchPlan(
+        output=str(output),
+        result_format=arguments.format,
+        pictures=can_draw and not arguments.no_pictures,
+        blender=arguments.blender,
+        retry_failed=arguments.retry_failed,
+        time_limit=_HOUR,
+    )
+
+
+def _defaults(arguments: argparse.Namespace) -> dict[str, Any]:
+    given = {name: getattr(arguments, name) for name in KINDS}
+    try:
+        return canonical(given, Path.cwd())
+    except ValueError as error:
+        raise remesh_command.UsageProblem(str(error)) from error
+
+
+def _chosen(assets: Sequence[Asset], text: str) -> list[Asset]:
+    try:
+        return in_range(assets, text)
+    except ValueError as error:
+        raise remesh_command.UsageProblem(f"--range: {error}") from error
+
+
+def _run_all(assets: Sequence[Asset], plan: BatchPlan, arguments: argparse.Namespace) -> bool:
+    """Whether all assets have been run; False after an interruption."""
+    with BatchProgress(len(assets), arguments.quiet) as progress:
+        statuses = _engine(assets, plan, arguments)
+        with contextlib.closing(statuses):
+            try:
+                for status in statuses:
+                    progress.update(status)
+            except KeyboardInterrupt:
+                return False
+    with contextlib.suppress(OSError):  # not empty where another batch uses the folder, or something was interrupted
+        (Path(plan.output) / WORK_FOLDER).rmdir()
+    return True
+
+
+def _engine(
+    assets: Sequence[Asset], plan: BatchPlan, arguments: argparse.Namespace
+) -> Generator[AssetStatus, None, None]:
+    if arguments.dask:
+        from ..batch_jobs.dask_engine import run_on_dask
+
+        return run_on_dask(assets, plan, arguments.dask)
+    processors = usable_threads()
+    jobs = arguments.jobs or min(processors, max(1, len(assets)))
+    threads = max(1, processors // jobs)
+    return run_locally(assets, BatchPlan(**{**vars(plan), "threads": threads}), jobs)
+
+
+def _summarize(assets: Sequence[Asset], plan: BatchPlan, arguments: argparse.Namespace, interrupted: bool) -> int:
+    lines = summary.collect(assets, plan)
+    summary.write_summary(Path(plan.output), lines)
+    summary_page.write_page(Path(plan.output), lines)
+    if not arguments.quiet:
+        found = ", ".join(f"{times} {name.replace('_', ' ')}" for name, times in summary.counts(lines).items())
+        say(f"{Path(plan.output) / 'summary.html'}: {len(lines)} assets: {found}")
+    if interrupted:
+        say("interrupted; the same command goes on from here")
+        return exit_codes.CANCELLED
+    failed = summary.failed_percent(lines)
+    if arguments.fail_above is not None and failed > arguments.fail_above:
+        say(f"{failed:.1f} % of the assets have no result, more than {arguments.fail_above:g} %")
+        return exit_codes.CANNOT_REMESH
+    return exit_codes.OK

@@ -1,0 +1,230 @@
+"""From what a user names to assets with settings and names of their own."""
+
+import json
+import os
+
+import pytest
+
+from hybrid_quad.batch_jobs import settings
+from hybrid_quad.batch_jobs.asset import Asset, BatchPlan
+from hybrid_quad.batch_jobs.asset_lock import asset_lock
+from hybrid_quad.batch_jobs.asset_range import in_range
+from hybrid_quad.batch_jobs.asset_status import AssetStatus, read_status, stands, write_status
+from hybrid_quad.batch_jobs.job_file import JobFileError, write_job_file
+from hybrid_quad.batch_jobs.job_hash import job_hash
+from hybrid_quad.batch_jobs.job_list import ObjectsUnknown, list_assets
+from hybrid_quad.cli import main as cli_main
+
+
+def no_objects(path):
+    raise ObjectsUnknown(f"{path}: no Blender here")
+
+
+@pytest.fixture
+def plan(tmp_path):
+    return BatchPlan(output=str(tmp_path / "out"))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("a.obj", "b.STL", "deep/er/c.ply", "notes.txt", ".hidden.obj", "out/a.obj"):
+        path = tmp_path / "in" / name if not name.startswith("out") else tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name)
+    return tmp_path / "in"
+
+
+def names(assets):
+    return [asset.name for asset in assets]
+
+
+def test_a_folder_a_pattern_and_files(folder, plan):
+    assert names(list_assets([str(folder)], {}, plan, no_objects)) == ["a", "b", "deep/er/c"]
+    assert names(list_assets([str(folder / "**" / "*.ply")], {}, plan, no_objects)) == ["deep/er/c"]
+    assert names(list_assets([str(folder / "a.obj"), str(folder / "b.STL")], {}, plan, no_objects)) == ["a", "b"]
+
+
+def test_results_are_no_inputs(folder, plan):
+    assert names(list_assets([str(folder.parent)], {}, plan, no_objects)) == ["in/a", "in/b", "in/deep/er/c"]
+
+
+def test_what_differs_in_its_suffix_only_gets_names_of_its_own(folder, plan):
+    (folder / "A.off").write_text("")
+    assert names(list_assets([str(folder)], {}, plan, no_objects))[:2] == ["A_off", "a_obj"]
+
+
+def test_no_result_takes_the_place_of_an_input(folder):
+    with pytest.raises(JobFileError, match="take the place"):
+        list_assets([str(folder / "a.obj")], {}, BatchPlan(output=str(folder)), no_objects)
+
+
+def test_nothing_found_is_said(folder, plan):
+    for text in ("nowhere", str(folder / "*.blend")):
+        with pytest.raises(JobFileError, match="no such file or folder"):
+            list_assets([text], {}, plan, no_objects)
+
+
+@pytest.mark.parametrize("form", ["csv", "json"])
+def test_a_job_file(folder, plan, form):
+    rows = [
+        {"input": "a.obj", "quads": "300", "name": "hero"},
+        {"input": "deep/**/*.ply", "sharp_angle": "none"},
+        {"input": "b.STL", "quads": "many"},
+        {"input": "missing.obj"},
+        {"input": "no*match"},
+        {"input": "a.obj", "name": "hero_fine", "edge_length": 0.25, "fit_limit": "yes"},
+    ]
+    path = folder / f"jobs.{form}"
+    if form == "json":
+        path.write_text(json.dumps(rows))
+    else:
+        columns = ["input", "name", "quads", "sharp_angle", "edge_length", "fit_limit"]
+        path.write_text("\n".join([",".join(columns), *(",".join(str(r.get(c, "")) for c in columns) for r in rows)]))
+    assets = list_assets([str(path)], {"quads": 2000, "sharp_angle": 30.0}, plan, no_objects)
+    assert names(assets) == ["hero", "er/c", "b", "missing", "no_match", "hero_fine"]
+    assert assets[0].settings == {"quads": 300, "sharp_angle": 30.0}
+    assert assets[1].settings == {"quads": 2000, "no_sharp": True}
+    assert "quads" in assets[2].problem and assets[4].problem
+    # A length takes the place of the number for all.
+    assert assets[5].settings == {"edge_length": 0.25, "fit_limit": True, "sharp_angle": 30.0}
+
+
+def test_a_written_list_says_the_same(folder, plan, tmp_path):
+    given = list_assets([str(folder)], {"quads": 300, "no_sharp": True}, plan, no_objects)
+    write_job_file(tmp_path / "list.json", given)
+    assert list_assets([str(tmp_path / "list.json")], {"quads": 7}, plan, no_objects) == given
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('[{"input": "a.obj", "quats": 5}]', "quats"),
+        ('[{"quads": 5}]', "no input"),
+        ("[5]", "list of objects"),
+        ("[", "no JSON"),
+        ('[{"input": "a.obj", "name": "../a"}]', "relative path"),
+        ('[{"input": "a.obj", "name": "x"}, {"input": "a.obj", "name": "X"}]', "two assets"),
+    ],
+)
+def test_job_files_that_cannot_be_used(folder, plan, text, message):
+    (folder / "jobs.json").write_text(text)
+    with pytest.raises(JobFileError, match=message):
+        list_assets([str(folder / "jobs.json")], {}, plan, no_objects)
+
+
+def test_objects_of_a_blender_file(folder, plan):
+    (folder / "scene.blend").write_text("")
+    blend = [str(folder / "scene.blend")]
+    found = list_assets(blend, {}, plan, lambda _: ["Cube", "a/b", "a:b"])
+    assert names(found)[0] == "scene/Cube" and len(set(names(found))) == 3
+    assert [asset.object_name for asset in found] == ["Cube", "a/b", "a:b"]
+    assert "no Blender here" in list_assets(blend, {}, plan, no_objects)[0].problem
+
+
+def test_the_settings_are_the_options_of_remesh():
+    parser = cli_main._parser()
+    options = vars(parser.parse_args(["remesh", "IN", "OUT"]))
+    others = {"input", "output", "report", "picture", "dump_stages", "quiet", "end_with_stdin", "run"}
+    assert set(options) - others == set(settings.KINDS)
+
+
+def test_one_form_of_a_value(tmp_path):
+    for given in (
+        {"quads": 500, "no_sharp": True},
+        {"quads": "500", "no_sharp": "yes"},
+        {"quads": 500.0, "no_sharp": 1},
+    ):
+        assert settings.canonical(given, tmp_path) == {"no_sharp": True, "quads": 500}
+    assert settings.canonical({"no_sharp": "false", "quads": "", "seed": None}, tmp_path) == {}
+    with pytest.raises(settings.SettingError):
+        settings.canonical({"quads": "5.5"}, tmp_path)
+
+
+def test_ranges():
+    items = list(range(20))
+    assert in_range(items, "0-3") == [0, 1, 2, 3]
+    assert in_range(items, "18-40, 2,2") == [2, 18, 19]
+    assert [each for first in range(0, 20, 6) for each in in_range(items, f"{first}-{first + 5}")] == items
+    for text in ("", "a", "3-", "-3", "1;2"):
+        with pytest.raises(ValueError):
+            in_range(items, text)
+
+
+def test_the_hash_is_of_all_that_makes_a_difference(tmp_path):
+    plan = BatchPlan(output=str(tmp_path))
+    mesh, density = tmp_path / "a.obj", tmp_path / "d.txt"
+    mesh.write_text("v 0 0 0")
+    density.write_text("1")
+    asset = Asset("a", str(mesh), settings={"quads": 5, "density": str(density), "time_limit": 3.0})
+    first = job_hash(asset, plan)
+    # Where files lie, what assets are called, and limits: none.
+    moved = tmp_path / "sub" / "b.obj"
+    moved.parent.mkdir()
+    moved.write_text("v 0 0 0")
+    same = Asset("b", str(moved), settings={"quads": 5, "density": str(density), "threads": 2})
+    assert job_hash(same, plan) == first
+    seen = {first, job_hash(asset, plan, version="0.0.9"), job_hash(asset, BatchPlan(str(tmp_path), ".ply"))}
+    seen.add(job_hash(Asset("a", str(mesh), settings={**asset.settings, "quads": 6}), plan))
+    density.write_text("2")
+    seen.add(job_hash(asset, plan))
+    mesh.write_text("v 0 0 1")
+    seen.add(job_hash(asset, plan))
+    assert len(seen) == 6
+
+
+def test_when_a_status_stands(tmp_path):
+    (tmp_path / "a.obj").write_text("12345")
+    good = AssetStatus("a", "s", "ok", job_hash="h", result="a.obj", result_bytes=5)
+    write_status(tmp_path / "a.hq.json", good)
+    assert read_status(tmp_path / "a.hq.json") == good
+    assert stands(good, "h", {}, tmp_path) and not stands(good, "other", {}, tmp_path)
+    (tmp_path / "a.obj").write_text("123")
+    assert not stands(good, "h", {}, tmp_path)
+    late = AssetStatus("a", "s", "time_limit", job_hash="h", limits={"time_limit": 5.0})
+    assert stands(late, "h", {"time_limit": 5.0}, tmp_path) and not stands(late, "h", {"time_limit": 50.0}, tmp_path)
+    assert not stands(AssetStatus("a", "s", "lost", job_hash="h"), "h", {}, tmp_path)
+    (tmp_path / "a.hq.json").write_text('{"asset": "a"')
+    assert read_status(tmp_path / "a.hq.json") is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locks of POSIX systems")
+def test_a_lock_is_one_processes(tmp_path):
+    with asset_lock(tmp_path / "lock", lambda: True) as first, asset_lock(tmp_path / "lock", lambda: True) as second:
+        assert first is not None and second is None
+    with asset_lock(tmp_path / "lock", lambda: True) as third:
+        assert third is not None
+
+
+def test_a_picture_of_a_cube(tmp_path):
+    image_module = pytest.importorskip("PIL.Image")
+    import numpy as np
+
+    from hybrid_quad.core import picture
+
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]], np.int32)
+    picture.write_picture(tmp_path / "p.png", corners, quads)
+    pixels = np.asarray(image_module.open(tmp_path / "p.png").convert("RGB")).astype(int)
+    assert pixels.shape == (picture.HEIGHT, picture.WIDTH, 3)
+    assert (pixels[0] == 255).all() and (pixels[:, 0] == 255).all()  # nothing at the rim
+    orange = np.abs(pixels - picture._FEW).sum(axis=2) < 60
+    assert orange.sum() > 50  # its corners, where three quads meet
+    assert ((pixels != 255).any(axis=2)).mean() > 0.2
+
+
+def test_many_quads_are_drawn_without_gaps():
+    pytest.importorskip("PIL")
+    import numpy as np
+
+    from hybrid_quad.core import picture
+
+    count = 220  # more squares than are drawn one by one
+    u, v = np.meshgrid(np.linspace(0, 1, count + 1), np.linspace(0, 1, count + 1), indexing="ij")
+    vertices = np.stack([u.ravel(), 0 * u.ravel(), v.ravel()], axis=1)
+    first = (np.arange(count)[:, None] * (count + 1) + np.arange(count)).ravel()
+    quads = np.stack([first, first + count + 1, first + count + 2, first + 1], axis=1).astype(np.int32)
+    assert len(quads) > picture._MOST_POLYGONS
+    pixels = np.asarray(picture.draw(vertices, quads))
+    filled = (pixels != 255).any(axis=2)
+    inside = [row[row.argmax() : len(row) - row[::-1].argmax()] for row in filled if row.any()]
+    assert min(row.mean() for row in inside) == 1
