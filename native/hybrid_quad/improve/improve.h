@@ -14,7 +14,7 @@ namespace hybrid_quad {
 struct ImproveOptions {
   bool edit_connectivity = true;   ///< valence moves, chain repair, wedge templates
   int smoothing_sweeps = 20;
-  double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
+  double chord_spring = 5.0;       ///< pulls curve vertices to equal chord error, more where curves bend
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double aspect_power = 0.7;       ///< 0: quads become squares; 1: they keep whatever aspect they have
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
