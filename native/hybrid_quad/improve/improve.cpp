@@ -67,7 +67,9 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
                            const ImproveOptions& options, const RunContext& context) {
   ImproveReport report;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
-  constexpr double kWorthwhile = 0.8;  // of the inverted quads: where more are left after a round, another hardly helps
+  // Where many are inverted, and a round leaves more than such a part of them, another hardly helps; few are worth all rounds.
+  constexpr int kManyInverted = 30;
+  constexpr double kWorthwhile = 0.8;
   Workpiece piece = workpiece_of(quads, input, features, index, options);
   if (!(piece.h > 0)) return report;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
@@ -94,7 +96,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     report.connectivity_moves += moves;
     const int before = report.inverted_after;
     report.inverted_after = untangle(piece, smoother, context);
-    if (report.inverted_after > kWorthwhile * before) break;
+    if (report.inverted_after > kManyInverted && report.inverted_after > kWorthwhile * before) break;
   }
   if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.enough_area, context);
   quads = piece.mesh.extract();
