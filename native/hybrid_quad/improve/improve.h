@@ -20,7 +20,7 @@ struct ImproveOptions {
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (flawed_quads)
+  double enough_area = 0;          ///< so much surface near a quad has to agree with it (flawed_quads)
 };
 
 struct ImproveReport {
