@@ -34,7 +34,7 @@ TEST(Mend, TurnsFoldedQuadsOver) {
   // One quad turned over with its surroundings dragged along.
   std::swap(sheet.quads.positions[Sheet::id(4, 4)], sheet.quads.positions[Sheet::id(6, 4)]);
   std::swap(sheet.quads.positions[Sheet::id(4, 6)], sheet.quads.positions[Sheet::id(6, 6)]);
-  const std::vector<int> before = flawed_quads(sheet.quads, sheet.index, 1.0);
+  const std::vector<int> before = flawed_quads(sheet.quads, sheet.index, {1.0});
   ASSERT_FALSE(before.empty());
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
@@ -42,7 +42,7 @@ TEST(Mend, TurnsFoldedQuadsOver) {
   EXPECT_GT(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}), 0);
   const QuadMesh after = piece.mesh.extract();
   EXPECT_TRUE(violations_of(after).empty());
-  EXPECT_LT(flawed_quads(after, sheet.index, 1.0).size(), before.size());
+  EXPECT_LT(flawed_quads(after, sheet.index, {1.0}).size(), before.size());
 }
 
 TEST(Mend, LeavesGoodMeshesAlone) {
@@ -55,11 +55,11 @@ TEST(Mend, LeavesGoodMeshesAlone) {
 
 TEST(Restoration, LocksAroundNewFlawsOnly) {
   Sheet sheet;
-  Restoration restoration(sheet.quads, sheet.index, 1.0);
+  Restoration restoration(sheet.quads, sheet.index, {1.0});
   EXPECT_EQ(restoration.flawed_before(), 0);
   QuadMesh worse = sheet.quads;
   std::swap(worse.positions[Sheet::id(5, 5)], worse.positions[Sheet::id(7, 5)]);
-  const std::vector<int> flawed = flawed_quads(worse, sheet.index, 1.0);
+  const std::vector<int> flawed = flawed_quads(worse, sheet.index, {1.0});
   ASSERT_FALSE(flawed.empty());
   EXPECT_TRUE(restoration.give_up_around(worse, flawed));
   EXPECT_GT(restoration.locked_count(), 0);
@@ -68,7 +68,7 @@ TEST(Restoration, LocksAroundNewFlawsOnly) {
   EXPECT_FALSE(restoration.locked()[0]);
 
   // What was flawed from the start is no place to go back to.
-  Restoration hopeless(worse, sheet.index, 1.0);
+  Restoration hopeless(worse, sheet.index, {1.0});
   EXPECT_EQ(hopeless.flawed_before(), static_cast<int>(flawed.size()));
   EXPECT_FALSE(hopeless.give_up_around(worse, flawed));
 }

@@ -14,7 +14,7 @@
 namespace hybrid_quad {
 namespace {
 
-constexpr double kUsualSize = 1e-3;
+constexpr double kEnoughArea = 1e-6;
 
 /// A closed input surface without features, and quads on it, all vertices free.
 struct Covered {
@@ -23,7 +23,7 @@ struct Covered {
     quads = to_quad_mesh(complex_of_quads(complex.positions, to_quad_mesh(complex).quads));
     std::fill(quads.anchor.begin(), quads.anchor.end(), features.face_region[0]);
     lengths.assign(input.vertex_count(), std::sqrt(input.total_area() / static_cast<double>(quads.quads.size())));
-    options.usual_size = kUsualSize;
+    options.enough_area = kEnoughArea;
   }
   static FeatureOptions no_angle() {
     FeatureOptions o;
@@ -37,7 +37,7 @@ struct Covered {
   void expect_sound() const {
     EXPECT_TRUE(violations_of(quads).empty());
     EXPECT_EQ(euler_characteristic(complex_of(quads)), input.euler_characteristic());
-    EXPECT_TRUE(flawed_quads(quads, index, kUsualSize).empty());
+    EXPECT_TRUE(flawed_quads(quads, index, {kEnoughArea}).empty());
   }
 
   TriangleMesh input;

@@ -64,6 +64,32 @@ TEST(InvertedQuads, FlippedQuadIsFoundAndThinSheetIsNot) {
   EXPECT_EQ(inverted_quads(mesh, one_side), std::vector<int>{3});
 }
 
+TEST(InvertedQuads, ASliverThatAgreesIsNotEnough) {
+  // A sheet that looks down, and above it a sliver that looks up, whose end comes near a quad that looks up, too.
+  const std::array<Vector3, 4> quad{Vector3(1.5, 1.5, 0), Vector3(2.5, 1.5, 0), Vector3(2.5, 2.5, 0), Vector3(1.5, 2.5, 0)};
+  const auto with_sliver = [&](double width) {
+    std::vector<Vector3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {2.2, 2, 0.01}, {3.8, 2, 0.01}, {3.8, 2 + width, 0.01}};
+    return TriangleMesh(points, {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}});
+  };
+  const SurfaceIndex sliver(with_sliver(1e-4), {}), wide(with_sliver(0.8), {});
+  constexpr double kEnough = 1e-4;
+  EXPECT_TRUE(is_inverted(quad, sliver, {kEnough}));
+  EXPECT_FALSE(is_inverted(quad, sliver)) << "whatever agrees";
+  EXPECT_FALSE(is_inverted(quad, wide, {kEnough}));
+}
+
+TEST(InvertedQuads, OneOfTwoSheetsInOnePlaceAgrees) {
+  const std::vector<Vector3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  const SurfaceIndex index(TriangleMesh(points, {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}}), {});
+  const auto square = [](double size) {
+    return std::array<Vector3, 4>{Vector3(1, 2, 0), Vector3(1 + size, 2, 0), Vector3(1 + size, 2 + size, 0), Vector3(1, 2 + size, 0)};
+  };
+  constexpr double kEnough = 1e-3;
+  EXPECT_FALSE(is_inverted(square(0.5), index, {kEnough}));
+  EXPECT_TRUE(is_inverted(square(0.01), index, {kEnough})) << "with either sheet as the nearest, too little of the other is near";
+  EXPECT_FALSE(is_inverted(square(0.01), index, {kEnough, true}));
+}
+
 TEST(SurfaceDistance, ParallelSheets) {
   const TriangleMesh sheet = test::flat_grid(6, 6);
   const SurfaceIndex index(sheet, {});

@@ -11,15 +11,15 @@ namespace hybrid_quad {
 /// How flawed (quality.h) some quads are together, as a Trial::Measure: what counts is the very property that a judge checks.
 class FlawMeasure {
  public:
-  /// \param whole, least_size  the surface to measure by, and the other parameter of flawed_quads
-  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, double least_size)
-      : piece_(piece), whole_(whole), least_size_(least_size) {}
+  /// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
+  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, double enough_area)
+      : piece_(piece), whole_(whole), enough_area_(enough_area) {}
 
   bool is_flawed(int q) const {
     constexpr double kLeastArea = 1e-9;
     const std::array<Vector3, 4> p = corners(q);
     const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, least_size_);
+    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, {enough_area_});
   }
 
   /// Minus the number of flawed ones; bad shapes together make a difference below kMostForShapes.
@@ -46,7 +46,7 @@ class FlawMeasure {
 
   const Workpiece& piece_;
   const SurfaceIndex& whole_;
-  double least_size_;
+  double enough_area_;
 };
 
 }  // namespace hybrid_quad

@@ -67,6 +67,9 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
                            const ImproveOptions& options, const RunContext& context) {
   ImproveReport report;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
+  // Where many are inverted, and a round leaves more than such a part of them, another hardly helps; few are worth all rounds.
+  constexpr int kManyInverted = 30;
+  constexpr double kWorthwhile = 0.8;
   Workpiece piece = workpiece_of(quads, input, features, index, options);
   if (!(piece.h > 0)) return report;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
@@ -91,9 +94,11 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     const int moves = improve_shapes(piece, smoother, context);
     if (moves == 0) break;
     report.connectivity_moves += moves;
+    const int before = report.inverted_after;
     report.inverted_after = untangle(piece, smoother, context);
+    if (report.inverted_after > kManyInverted && report.inverted_after > kWorthwhile * before) break;
   }
-  if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.usual_size, context);
+  if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.enough_area, context);
   quads = piece.mesh.extract();
   return report;
 }
@@ -131,19 +136,22 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
                             const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
-  constexpr int kAttempts = 5;
+  constexpr int kAttempts = 5, kMany = 12;
+  constexpr double kFewer = 0.8;
   const SurfaceIndex& judged = whole ? *whole : index;
-  Restoration restoration(quads, judged, options.usual_size, context.threads);
+  Restoration restoration(quads, judged, options.enough_area, context.threads);
   QuadMesh best;
   ImproveReport report;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     QuadMesh improved = quads;
     ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, judged, options, context);
-    const std::vector<int> flawed = flawed_quads(improved, judged, options.usual_size, context.threads);
+    const std::vector<int> flawed = flawed_quads(improved, judged, {options.enough_area}, context.threads);
     now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();
-    const bool go_on = !flawed.empty() && restoration.give_up_around(improved, flawed);
+    // Where so many are flawed that locking a few places makes no difference, another attempt would not either.
+    const bool is_hopeless = attempt > 0 && now.flawed_after > kMany && now.flawed_after > kFewer * report.flawed_after;
+    const bool go_on = !flawed.empty() && !is_hopeless && restoration.give_up_around(improved, flawed);
     if (attempt == 0 || now.flawed_after < report.flawed_after) {
       best = std::move(improved);
       report = now;
@@ -172,7 +180,7 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
   bind(piece);
   Smoother smoother(piece, smoothing_of(options, context.threads));
   smoother.update_frames(true);
-  const FlawMeasure measure(piece, whole ? *whole : index, options.usual_size);
+  const FlawMeasure measure(piece, whole ? *whole : index, options.enough_area);
   const int before = live_quads(piece.mesh);
   for (int now = before, last = -1; now != number.wanted && now != last;) {
     last = now;
@@ -183,7 +191,7 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
     now = live_quads(piece.mesh);
     smooth_without_flaws(piece, smoother, measure, kSweeps, context);
   }
-  mend_flawed(piece, smoother, measure.surface(), options.usual_size, context);
+  mend_flawed(piece, smoother, measure.surface(), options.enough_area, context);
   quads = piece.mesh.extract();
   return static_cast<int>(quads.quads.size()) - before;
 }

@@ -14,13 +14,13 @@ namespace hybrid_quad {
 struct ImproveOptions {
   bool edit_connectivity = true;   ///< valence moves, chain repair, wedge templates
   int smoothing_sweeps = 20;
-  double chord_spring = 10.0;      ///< mu of IMPROVE.md: pulls curve vertices to equal chord error
+  double chord_spring = 5.0;       ///< pulls curve vertices to equal chord error, more where curves bend
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double aspect_power = 0.7;       ///< 0: quads become squares; 1: they keep whatever aspect they have
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  double usual_size = 0;           ///< quads smaller than this have no excuse to point against the surface (flawed_quads)
+  double enough_area = 0;          ///< so much surface near a quad has to agree with it (flawed_quads)
 };
 
 struct ImproveReport {

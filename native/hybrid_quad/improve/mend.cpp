@@ -14,8 +14,8 @@ namespace {
 
 class Mender {
  public:
-  Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double least_size)
-      : piece_(piece), smoother_(smoother), measure_(piece, whole, least_size), search_(piece.mesh, kEffort) {}
+  Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area)
+      : piece_(piece), smoother_(smoother), measure_(piece, whole, enough_area), search_(piece.mesh, kEffort) {}
 
   bool is_flawed(int q) const { return measure_.is_flawed(q); }
 
@@ -97,9 +97,9 @@ class Mender {
 
 }  // namespace
 
-int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double least_size, const RunContext& context) {
+int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area, const RunContext& context) {
   constexpr int kRounds = 3;
-  Mender mender(piece, smoother, whole, least_size);
+  Mender mender(piece, smoother, whole, enough_area);
   int changes = 0;
   for (int round = 0; round < kRounds; ++round) {
     int mended = 0;

@@ -12,7 +12,7 @@ namespace hybrid_quad {
 /// leave no room to make it better.
 class Restoration {
  public:
-  Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double usual_size, int threads = 1);
+  Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double enough_area, int threads = 1);
 
   int flawed_before() const { return flawed_before_; }
   const std::vector<char>& locked() const { return locked_; }  ///< #Q of the extracted mesh

@@ -308,7 +308,9 @@ double Smoother::move_on_curve(int v, double size) {
   double before = energy(v, start, &tangent, 1, d);
   const double density = std::max(1e-12, curve.weight_density(arc));
   const double ahead = piece_.weighted_gap(v, 1) / density, behind = piece_.weighted_gap(v, -1) / density;
-  const double stiffness = options_.chord_spring / (size * size);
+  // The more a curve bends, the more even spacing matters: what is straight has no chord error.
+  constexpr double kWhereCurved = 0.8;
+  const double stiffness = options_.chord_spring * (1 + kWhereCurved * (density * density - 1)) / (size * size);
   const auto spring = [&](double t) {
     return stiffness * ((ahead - t) * (ahead - t) + (behind + t) * (behind + t));
   };

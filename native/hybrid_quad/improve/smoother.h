@@ -11,7 +11,7 @@
 namespace hybrid_quad {
 
 struct SmootherOptions {
-  double chord_spring = 10;      ///< pull of curve vertices to equal chord error
+  double chord_spring = 5;       ///< pull of curve vertices to equal chord error, more where curves bend
   double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
   const GuideMap* guides = nullptr;  ///< on the input, may be null
   double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape

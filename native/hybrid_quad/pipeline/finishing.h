@@ -20,7 +20,8 @@ class Finishing {
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 
-  /// Quads that are flawed whatever their size, and with these smaller ones that only just pass that test (flawed_quads).
+  /// Quads that are flawed, and with these some that only just pass that test (flawed_quads): where little of the surface
+  /// agrees with them, or only a sheet in the same place.
   std::vector<int> flawed(const QuadMesh& mesh, int threads) const;
   std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
 

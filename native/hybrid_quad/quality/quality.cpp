@@ -13,16 +13,6 @@ namespace hybrid_quad {
 
 namespace {
 
-Vector3 quad_area_vector(const QuadMesh& mesh, int q) {
-  const auto& v = mesh.quads[q];
-  return 0.5 * (mesh.positions[v[2]] - mesh.positions[v[0]]).cross(mesh.positions[v[3]] - mesh.positions[v[1]]);
-}
-
-std::array<Vector3, 4> corners_of(const QuadMesh& mesh, int q) {
-  const auto& v = mesh.quads[q];
-  return {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]};
-}
-
 /// A side of a quad, by its sorted ends.
 struct Side {
   int low, high, dart;
@@ -169,41 +159,6 @@ std::vector<Vector3> curve_samples(const TriangleMesh& input, const FeatureGraph
   return points;
 }
 
-/// Smallest cosine between a normal and those of the faces at a point of a surface: two on an edge, more at a vertex.
-double least_agreement(const TriangleMesh& mesh, const SurfacePoint& point, const Vector3& normal, double touches) {
-  double least = normal.dot(mesh.normal(point.face));
-  for (int h = 3 * point.face; h < 3 * point.face + 3; ++h) {
-    if ((mesh.position(mesh.from(h)) - point.position).norm() <= touches) {
-      const int first = mesh.outgoing(mesh.from(h));
-      for (int k = first; k >= 0;) {
-        least = std::min(least, normal.dot(mesh.normal(k / 3)));
-        k = mesh.rotate_ccw(k);
-        if (k == first) break;
-      }
-    }
-    const Vector3 edge = mesh.edge_vector(h), to_point = point.position - mesh.position(mesh.from(h));
-    const int across = mesh.opposite(h);
-    if (across >= 0 && to_point.cross(edge).norm() <= touches * edge.norm())
-      least = std::min(least, normal.dot(mesh.normal(across / 3)));
-  }
-  return least;
-}
-
-/// The quads for which test(q) holds, ascending.
-template <class Test>
-std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test) {
-  constexpr int kChunk = 256;
-  const int count = static_cast<int>(mesh.quads.size());
-  std::vector<char> holds(count, 0);
-  parallel_for((count + kChunk - 1) / kChunk, threads, [&](int c) {
-    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q) holds[q] = test(q);
-  });
-  std::vector<int> found;
-  for (int q = 0; q < count; ++q)
-    if (holds[q]) found.push_back(q);
-  return found;
-}
-
 }  // namespace
 
 double scaled_jacobian(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
@@ -248,46 +203,6 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
   for (std::size_t v = 0; v < valence.size(); ++v)
     quality.irregular_vertices += valence[v] > 0 && !boundary[v] && valence[v] != 4;
   return quality;
-}
-
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size) {
-  constexpr double kAgainst = -0.15, kReach = 0.28, kTouches = 1e-6;
-  Vector3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
-  const double length = normal.norm();
-  if (!(length > 0)) return false;
-  normal /= length;
-  Vector3 centre = Vector3::Zero();
-  double size = 0;
-  for (int i = 0; i < 4; ++i) {
-    centre += 0.25 * corners[i];
-    size += 0.25 * (corners[(i + 1) % 4] - corners[i]).norm();
-  }
-  const SurfacePoint near = surface.nearest(centre);
-  if (near.face < 0 || least_agreement(surface.mesh(), near, normal, kTouches * size) >= kAgainst) return false;
-  SurfaceIndex::Filter along;
-  along.normal = normal;
-  along.min_cosine = 0.05;
-  const SurfacePoint agreeing = surface.nearest(centre, along);
-  if (agreeing.face < 0) return true;
-  const auto& t = surface.mesh().face(agreeing.face);
-  const Vector3 centroid = (surface.mesh().position(t[0]) + surface.mesh().position(t[1]) + surface.mesh().position(t[2])) / 3;
-  const double away = size < least_size ? (centroid - centre).norm() : std::sqrt(agreeing.squared_distance);
-  return away > std::sqrt(near.squared_distance) + kReach * size;
-}
-
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size, int threads) {
-  return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, least_size); });
-}
-
-std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size, int threads) {
-  constexpr double kLeastArea = 1e-10;
-  double sum = 0;
-  for (const auto& v : mesh.quads)
-    for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
-  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
-  return quads_that(mesh, threads, [&](int q) {
-    return !(quad_area_vector(mesh, q).norm() > kLeastArea * mean * mean) || is_inverted(corners_of(mesh, q), surface, least_size);
-  });
 }
 
 SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context, int samples) {

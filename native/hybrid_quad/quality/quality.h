@@ -38,17 +38,23 @@ struct EdgeLoopSummary {
 /// \pre `mesh` is valid (violations_of)
 EdgeLoopSummary edge_loops_of(const QuadMesh& mesh);
 
-/// Whether a quad points against the surface: against a face at its nearest point and against all of it within a quarter of
-/// the quad's mean edge length beyond that, so that the far side of a thin sheet does not count.
-/// \param least_size  for quads with shorter edges (mean, scene units) it is not enough that a face comes so near: its middle
-///                    must
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, double least_size = 0);
+/// What must agree with a quad near it, so that it does not point against the surface: so much area (scene units squared) or
+/// the middle of a face.
+struct Agreement {
+  double area = 0;            ///< 0: whatever there is
+  bool or_coincides = false;  ///< or the inside of a face that is as near as the nearest one, however small the quad
+};
+
+/// Whether a quad points against the surface: against a face at its nearest point and against nearly all of it within a
+/// quarter of the quad's mean edge length beyond that, so that the far side of a thin sheet does not count. Of what is as near
+/// as the nearest point, at an edge or where sheets coincide, any face counts.
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement = {});
 
 /// All quads that are. Ascending.
-std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0, int threads = 1);
+std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
 /// Quads that are inverted, or without area (below 1e-10 of the squared mean edge length). Ascending.
-std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, double least_size = 0, int threads = 1);
+std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
 /// Distances in percent of the diagonal of the input's bounding box.
 struct SurfaceDistance {
