@@ -54,6 +54,28 @@ TEST(FeatureSize, GivesTubesRoomForFourQuadsAround) {
   }
 }
 
+TEST(FeatureSize, LetsChordsFollowBends) {
+  constexpr double kRadius = 1, kLength = 1;
+  const TriangleMesh tube = test::open_cylinder(60, 60, kRadius, 12);
+  const std::vector<double> h = lengths(tube, kLength);
+  int on_rim = 0, inside = 0;
+  for (int v = 0; v < tube.vertex_count(); ++v) {
+    const double from_rim = std::min(tube.position(v)[2], 12 - tube.position(v)[2]);
+    if (from_rim < 0.01) {
+      EXPECT_LT(h[v] * h[v] / (8 * kRadius), 0.07 * kLength);  // how far a chord of that length is from the circle
+      EXPECT_GE(h[v], 0.6 * kLength);
+      ++on_rim;
+    } else if (from_rim > 3) {
+      EXPECT_DOUBLE_EQ(h[v], kLength);
+      ++inside;
+    }
+  }
+  EXPECT_EQ(on_rim, 120);
+  EXPECT_GT(inside, 0);
+  // A curve that bends less than a chord shows is left alone.
+  for (const double length : lengths(test::open_cylinder(60, 20, 10, 4), kLength)) EXPECT_DOUBLE_EQ(length, kLength);
+}
+
 TEST(FeatureSize, CountsQuads) {
   const TriangleMesh mesh = test::flat_grid(10, 10, 3, 2);
   EXPECT_NEAR(quads_for_lengths(mesh, std::vector<double>(mesh.vertex_count(), 0.1)), 600, 1e-6);

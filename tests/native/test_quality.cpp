@@ -78,6 +78,15 @@ TEST(InvertedQuads, ASliverThatAgreesIsNotEnough) {
   EXPECT_FALSE(is_inverted(quad, wide, {kEnough}));
 }
 
+TEST(InvertedQuads, HoweverSmallBesideItsPlace) {
+  const std::vector<Vector3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  const SurfaceIndex index(TriangleMesh(points, {{0, 2, 1}, {0, 3, 2}}), {});
+  for (const double size : {1e-3, 1e-5, 1e-7}) {
+    const std::array<Vector3, 4> quad{Vector3(1, 3, 0), Vector3(1 + size, 3, 0), Vector3(1 + size, 3 + size, 0), Vector3(1, 3 + size, 0)};
+    EXPECT_TRUE(is_inverted(quad, index)) << size;
+  }
+}
+
 TEST(InvertedQuads, OneOfTwoSheetsInOnePlaceAgrees) {
   const std::vector<Vector3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
   const SurfaceIndex index(TriangleMesh(points, {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}}), {});

@@ -94,7 +94,8 @@ struct SurfaceIndex::Tree {
   static void take(const Vector3& p, int f, const std::array<Vector3, 3>& corner, SurfacePoint& best) {
     const Vector3 q = nearest_on_triangle(p, corner[0], corner[1], corner[2]);
     const double d = (q - p).squaredNorm();
-    if (f < best.face ? !(d < with_rounding(best.squared_distance, p)) : !(with_rounding(d, p) < best.squared_distance)) return;
+    const bool comes_first = best.face < 0 || f < best.face;  // of none yet, the distance is the filter's
+    if (comes_first ? !(d < with_rounding(best.squared_distance, p)) : !(with_rounding(d, p) < best.squared_distance)) return;
     best = {f, q, d};
   }
   std::array<Vector3, 3> corners_of(int f) const {
