@@ -106,17 +106,16 @@ bool sizes_agree(const QuadComplex& c, std::vector<std::string>& found) {
 void check_gluing(const QuadComplex& c, std::vector<std::string>& found) {
   for (int d = 0; d < static_cast<int>(c.opposite.size()); ++d) {
     const int o = c.opposite[d];
-    const std::string name = "dart " + std::to_string(d);
+    const auto report = [&](const char* what) { found.push_back("dart " + std::to_string(d) + what); };
     if (c.curve[d] >= 0 && (c.kind[c.from(d)] == VertexKind::kFree || c.kind[c.to(d)] == VertexKind::kFree))
-      found.push_back(name + " lies on a curve but ends at a free vertex");
+      report(" lies on a curve but ends at a free vertex");
     if (o < 0) continue;
     if (o == d || c.opposite[o] != d) {
-      found.push_back(name + ": gluing is no involution");
+      report(": gluing is no involution");
       continue;
     }
-    if (c.from(o) != c.to(d) || c.to(o) != c.from(d))
-      found.push_back(name + ": its two sides disagree on the vertices");
-    if (c.curve[o] != c.curve[d]) found.push_back(name + ": its two sides disagree on the curve");
+    if (c.from(o) != c.to(d) || c.to(o) != c.from(d)) report(": its two sides disagree on the vertices");
+    if (c.curve[o] != c.curve[d]) report(": its two sides disagree on the curve");
   }
 }
 
