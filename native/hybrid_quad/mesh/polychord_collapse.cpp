@@ -137,8 +137,12 @@ class PolychordCollapse {
 
   /// What is quick to see comes first: most rows that may not go are tried over and over.
   bool is_sound(const QuadComplex& result) const {
-    return result.quad_count() > 0 && lone_quads(result) <= lone_quads(complex_) && violations_of(result).empty() &&
-           euler_characteristic(result) == euler_characteristic(complex_) && violations_of(to_quad_mesh(result)).empty();
+    const int euler = euler_characteristic(complex_);
+    if (result.quad_count() == 0 || lone_quads(result) > lone_quads(complex_) || !violations_of(result).empty()) return false;
+    if (euler_characteristic(result) != euler) return false;
+    const QuadMesh mesh = to_quad_mesh(result);
+    // A hole with two sides is none to who knows sides by their ends.
+    return violations_of(mesh).empty() && euler_characteristic(complex_of_quads(mesh.positions, mesh.quads)) == euler;
   }
 
   const QuadComplex& complex_;

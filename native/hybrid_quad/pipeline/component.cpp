@@ -283,6 +283,9 @@ class ComponentRemesher {
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);
+      if (violations_of(mesh).empty() &&
+          euler_characteristic(complex_of_quads(mesh.positions, mesh.quads)) != mesh_.euler_characteristic())
+        throw InternalError("assemble", "a hole has two sides, which are one by their ends");
       order_feature_edges(mesh, mesh_, plan_.features);
       return mesh;
     });
