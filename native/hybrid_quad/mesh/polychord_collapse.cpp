@@ -141,8 +141,7 @@ class PolychordCollapse {
     if (result.quad_count() == 0 || lone_quads(result) > lone_quads(complex_) || !violations_of(result).empty()) return false;
     if (euler_characteristic(result) != euler) return false;
     const QuadMesh mesh = to_quad_mesh(result);
-    // A hole with two sides is none to who knows sides by their ends.
-    return violations_of(mesh).empty() && euler_characteristic(complex_of_quads(mesh.positions, mesh.quads)) == euler;
+    return violations_of(mesh).empty() && euler_characteristic(mesh) == euler;
   }
 
   const QuadComplex& complex_;

@@ -84,6 +84,8 @@ int euler_characteristic(const QuadComplex& complex) {
   return vertices - (darts + border) / 2 + complex.quad_count();
 }
 
+int euler_characteristic(const QuadMesh& mesh) { return euler_characteristic(complex_of_quads(mesh.positions, mesh.quads)); }
+
 namespace {
 
 /// Where the arrays cannot even be read as a complex, the finer checks make no sense.

@@ -41,6 +41,9 @@ std::vector<int> vertex_orbits(const std::vector<int>& opposite);
 
 /// V - E + F, vertices no quad uses not counted.
 int euler_characteristic(const QuadComplex& complex);
+/// The same of an indexed mesh, which knows sides by their ends alone: there a hole with two sides is none, which
+/// violations_of(QuadMesh) cannot see. \pre no violations \throws InternalError as complex_of_quads
+int euler_characteristic(const QuadMesh& mesh);
 
 /// Gluing is an involution, sides agree on vertices and curves, every vertex id is one orbit.
 std::vector<std::string> violations_of(const QuadComplex& complex);

@@ -84,7 +84,7 @@ class ComponentRemesher {
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
-    require_sound("improve", violations_of(result_.mesh));
+    require_valid("improve", result_.mesh);
     result_.flawed_quads = static_cast<int>(finishing_.flawed(result_.mesh, context_.threads).size());
     const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
@@ -182,6 +182,13 @@ class ComponentRemesher {
   double count_tolerance() const {
     constexpr double kTolerance = 0.035, kToleranceInQuads = 2;
     return std::max(kTolerance, kToleranceInQuads / plan_.quads);
+  }
+
+  /// What is written can be held by an indexed mesh, and has the surface's topology there too.
+  void require_valid(const std::string& stage, const QuadMesh& mesh) const {
+    require_sound(stage, violations_of(mesh));
+    if (euler_characteristic(mesh) != mesh_.euler_characteristic())
+      throw InternalError(stage, "the quads, by their vertices, have another topology than the surface");
   }
 
   void finish(Extraction& extraction) {
@@ -283,13 +290,10 @@ class ComponentRemesher {
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);
-      if (violations_of(mesh).empty() &&
-          euler_characteristic(complex_of_quads(mesh.positions, mesh.quads)) != mesh_.euler_characteristic())
-        throw InternalError("assemble", "a hole has two sides, which are one by their ends");
       order_feature_edges(mesh, mesh_, plan_.features);
       return mesh;
     });
-    require_sound("assemble", violations_of(out.mesh));
+    require_valid("assemble", out.mesh);
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.mesh, "assemble"));
     out.patch_count = static_cast<int>(singular.patches.size());
     out.singular_area = singular.singular_area;

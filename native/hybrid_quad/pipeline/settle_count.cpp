@@ -64,7 +64,7 @@ class CountSettling {
 
   /// \returns whether `mesh` is sound and no worse; then it is the result
   bool take(QuadMesh mesh, double most_error) {
-    if (!violations_of(mesh).empty()) return false;
+    if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
     const Measured then = measured(mesh);
     if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed) return false;
     now_ = then;

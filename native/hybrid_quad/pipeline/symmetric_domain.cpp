@@ -109,7 +109,7 @@ std::vector<std::string> symmetry_warnings(const RemeshDomain& domain, const Tri
   std::vector<std::string> warnings;
   if (domain.faces_in_plane > 0)
     warnings.push_back(std::to_string(domain.faces_in_plane) + " faces in a mirror plane are left out");
-  if (euler_characteristic(complex_of_quads(result.positions, result.quads)) != input.euler_characteristic())
+  if (euler_characteristic(result) != input.euler_characteristic())
     warnings.push_back("the mirrored surface has another topology than the input");
   return warnings;
 }

@@ -17,8 +17,8 @@ struct FeatureSizeOptions {
 };
 
 /// Target lengths that give way to small features: near a curve that is shorter than a quad edge, and where two curves
-/// that do not meet are nearer than one, the length is that of the curve or of the gap (within bounds); thin tubes and
-/// tips get at least four quads around. The length grows back with the distance.
+/// that do not meet are nearer than one, the length is that of the curve or of the gap (within bounds); where curves bend
+/// within an edge it follows the bend; thin tubes and tips get at least four quads around. The length grows back with the distance.
 /// \param index  of the surface
 /// \param length  asked quad edge length (scene units)
 /// \returns #V of the mesh
