@@ -25,8 +25,16 @@ constexpr PassSettings kSettings[] = {{},
                                       {4.0, 1e-5, true},
                                       {3.2, 1e-4, true},
                                       {5.0, 1e-4, true}};
-/// So many flawed quads are not mended by another pass with as few.
-constexpr int kManyFlaws = 12;
+/// So many flawed quads are not mended by another pass with as few: only where there are far more is the surface nowhere thinner
+/// than quads are long. Those are taken out again afterwards.
+bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
+  constexpr int kFew = 5, kMany = 12;
+  constexpr double kManyOfAll = 0.01, kFarMore = 2.5;
+  const double flawed = best.flawed_quads;
+  if (flawed > kFew && flawed > kManyOfAll * static_cast<double>(best.mesh.quads.size())) return settings.quads_factor < kFarMore;
+  return flawed > kMany && !settings.as_needed;
+}
+
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
 /// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;
@@ -65,7 +73,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   for (PassSettings settings : kSettings) {
     settings.is_rough = is_rough;
     if (any && settings.as_needed && best.flawed_quads == 0) break;
-    if (any && !settings.as_needed && best.flawed_quads > kManyFlaws) continue;
+    if (any && is_hopeless(settings, best)) continue;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
     if (any && budget.left - settings.quads_factor * first_work < reserve) {
       best.gave_up = best.flawed_quads > 0;
