@@ -30,7 +30,7 @@ class Preview:
         Middles of small triangles that cover the surface, and their unit normals.
     u, v : (n, 3) float64
         The two edge vectors of a quad at each point, tangent to the surface, in the units of the mesh: their directions are
-        the field, their lengths the size.
+        the field, their lengths the size; without quads, the size that was asked for, before anything has to fit together.
     spread : (k,) int32
         Of the points, ones about as far from each other as quads are long: enough to draw.
     singular_points : (s, 3) float64

@@ -135,7 +135,11 @@ def surface_distances(
     """
     polygons = as_polygons(faces)
     found: FloatArray = native.load().distances(
-        as_vertices(points), as_vertices(vertices), polygons.sizes, polygons.vertices, threads=threads or usable_threads()
+        as_vertices(points),
+        as_vertices(vertices),
+        polygons.sizes,
+        polygons.vertices,
+        threads=threads or usable_threads(),
     )
     return found
 

@@ -16,16 +16,17 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Generic, TypeVar
 
 from ..core.errors import Cancelled
-from ..core.remesh import RemeshResult
 from .bundle import load_fields
 from .death import WorkerDied
 from .interpreter import worker_command
+from .kinds import Request
 from .messages import Message, decode, error_of
-from .request import RemeshRequest
 from .run import REQUEST, RESULT
+
+Result = TypeVar("Result")
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -40,7 +41,7 @@ _LOG_SHOWN = 4000  # characters
 _FIRST_STAGE = "start"
 
 
-class WorkerRun:
+class WorkerRun(Generic[Result]):
     """Solves a request in another process.
 
     Attributes
@@ -54,13 +55,17 @@ class WorkerRun:
     """
 
     def __init__(
-        self, request: RemeshRequest, *, temporary_folder: str | None = None, command: Sequence[str] | None = None
+        self,
+        request: Request[Result],
+        *,
+        temporary_folder: str | None = None,
+        command: Sequence[str] | None = None,
     ) -> None:
         """Writes the request and starts the process.
 
         Parameters
         ----------
-        request : RemeshRequest
+        request : Request
         temporary_folder : str, optional
             Where the run's own folder is made, which is private and removed with the run; by default the system's.
         command : sequence of str, optional
@@ -75,8 +80,9 @@ class WorkerRun:
         self.fraction = 0.0
         self.is_finished = False
         self._error: Exception | None = None
-        self._result: RemeshResult | None = None
-        self._limit = request.options.time_limit
+        self._result: Result | None = None
+        self._result_type = request.result_type
+        self._limit = request.time_limit
         self._began = self._news = time.monotonic()
         self._folder = Path(tempfile.mkdtemp(prefix="hybrid_quad_", dir=temporary_folder))
         try:
@@ -133,7 +139,7 @@ class WorkerRun:
             time.sleep(_INTERVAL)
         return self.is_finished
 
-    def result(self) -> RemeshResult:
+    def result(self) -> Result:
         """The run's result; waits for it.
 
         Raises
@@ -180,7 +186,7 @@ class WorkerRun:
             self._end(error)
             return
         try:
-            self._result = RemeshResult(**load_fields(self._folder / RESULT))
+            self._result = self._result_type(**load_fields(self._folder / RESULT))
         except Exception as error:  # for example a disk that is full
             self._end(error)
         else:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .bundle import save_fields
+from .kinds import load_request
 from .messages import Message, done_message, progress_message
-from .request import load_request
 
 REQUEST = "request.npz"
 RESULT = "result.npz"

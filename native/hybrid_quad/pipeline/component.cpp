@@ -101,7 +101,7 @@ class ComponentRemesher {
       quads.features = plan_.features;
       take(std::move(quads));
     } else {
-      sized_frames(unit, plan_.quads);
+      sized_ = as_large_as_asked(unit);
     }
     return {std::move(surface_), std::move(sized_), std::move(result_)};
   }
@@ -238,6 +238,15 @@ class ComponentRemesher {
       }
     }
     return extract(unit, asked, wanted, Attempt::kPatchesOnly);
+  }
+
+  /// Without regard to what fits together, which is what takes its time.
+  FrameField as_large_as_asked(FrameField unit) const {
+    for (int f = 0; f < surface_.mesh.face_count(); ++f) {
+      unit.du[f] /= surface_.target_length[f];
+      unit.dv[f] /= surface_.target_length[f];
+    }
+    return unit;
   }
 
   /// Frames for a number of quads. Where that only scales them, they are solved for once.

@@ -10,7 +10,8 @@ namespace hybrid_quad {
 
 /// What the first stages of a run say about its result, in the caller's units and on the whole surface, mirror images included.
 struct Preview {
-  /// One of each face of the working surface: its middle, its unit normal, and the two edge vectors of a quad there.
+  /// One of each face of the working surface: its middle, its unit normal, and the two edge vectors of a quad there
+  /// (without quads, as large as it was asked for).
   std::vector<Vector3> points, normals, u, v;
   std::vector<int> spread;  ///< of these, ones about as far from each other as a quad is long: enough to draw
   std::vector<Vector3> singular_points;
