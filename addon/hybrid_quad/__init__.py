@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .core.options import RemeshOptions
     from .core.preview import Preview, preview
     from .core.remesh import RemeshResult, remesh
+    from .core.repair import Repaired, repair
     from .core.strokes import Stroke, guides_from_strokes
     from .core.subdivision import Subdivided, subdivide, surface_distances
 
@@ -39,6 +40,7 @@ __all__ = [
     "Preview",
     "RemeshOptions",
     "RemeshResult",
+    "Repaired",
     "Stroke",
     "Subdivided",
     "check",
@@ -46,6 +48,7 @@ __all__ = [
     "mesh_arrays",
     "preview",
     "remesh",
+    "repair",
     "subdivide",
     "surface_distances",
 ]
@@ -61,6 +64,8 @@ _MODULE_OF = {
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "Repaired": "repair",
+    "repair": "repair",
     "Stroke": "strokes",
     "guides_from_strokes": "strokes",
     "Subdivided": "subdivision",

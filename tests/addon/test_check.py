@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import bpy
+import pytest
 
 from hybrid_quad.blender.check_operators import read_check
 from scenes import add_object, add_sphere
@@ -89,3 +90,28 @@ def test_the_list_is_kept_as_json():
     obj = _with_fin()
     bpy.ops.object.hybrid_quad_check()
     assert json.loads(obj.hybrid_quad.last_check) == read_check(obj)
+
+
+def test_a_repaired_copy_has_nothing_to_repair_and_the_object_stays():
+    obj = _with_fin()
+    obj.location.x = 2
+    material = bpy.data.materials.new("Red")
+    obj.data.materials.append(material)
+    before = len(obj.data.vertices), len(obj.data.polygons)
+    assert bpy.ops.object.hybrid_quad_repair() == {"FINISHED"}
+    copy = bpy.context.object
+    assert copy.name == "Fin Repaired" and copy.location.x == 2 and copy.data.materials[0] == material
+    assert (len(obj.data.vertices), len(obj.data.polygons)) == before and obj.hide_get()
+    assert not copy.data.validate()
+    bpy.ops.object.hybrid_quad_check()
+    assert not [row for row in read_check(copy) if not row["kept"]]
+    bpy.ops.object.hybrid_quad_remesh()
+    assert not bpy.context.object.hybrid_quad.last_report == ""
+
+
+def test_what_cannot_be_repaired_leaves_no_copy():
+    add_object("Flat", [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
+    before = len(bpy.data.objects), len(bpy.data.meshes)
+    with pytest.raises(RuntimeError, match="area"):
+        bpy.ops.object.hybrid_quad_repair()
+    assert (len(bpy.data.objects), len(bpy.data.meshes)) == before

@@ -88,7 +88,7 @@ def test_the_preview_is_in_the_units_and_at_the_place_of_the_mesh():
     larger = hybrid_quad.preview(64 * vertices, faces, RemeshOptions(quads=500), with_quads=True)
     for name in ("points", "singular_points", "quad_vertices", "u", "v"):
         np.testing.assert_allclose(getattr(larger, name), 64 * getattr(here, name), atol=1e-9)
-    away = hybrid_quad.preview(vertices + [8, 0, 0], faces, RemeshOptions(quads=500), with_quads=True)
+    away = hybrid_quad.preview(vertices + np.array([8, 0, 0]), faces, RemeshOptions(quads=500), with_quads=True)
     assert hybrid_quad.surface_distances(away.points - [8, 0, 0], vertices, faces).max() < 0.05
 
 
