@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 
 #include "defect_list.h"
+#include "hybrid_quad/mesh/indexed_surface.h"
 #include "polygon_arrays.h"
 
 namespace py = pybind11;
@@ -37,11 +38,12 @@ void bind_check(py::module_& module, const ErrorTypes& errors) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         try {
           const BuiltMesh built = built_without_gil(soup);
+          const IndexedSurface surface = indexed_surface(built);
           py::dict out;
-          out["vertices"] = array_from_points(built.mesh.positions());
-          out["triangles"] = array_from_rows(built.mesh.faces());
-          out["vertex_origins"] = array_from_values(built.input_vertex);
-          out["face_origins"] = array_from_values(built.input_face);
+          out["vertices"] = array_from_points(surface.positions);
+          out["triangles"] = array_from_rows(surface.triangles);
+          out["vertex_origins"] = array_from_values(surface.input_vertex);
+          out["face_origins"] = array_from_values(surface.input_face);
           out["defects"] = list_of_defects(built.defects);
           return out;
         } catch (const InputError& error) {

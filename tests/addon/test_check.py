@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 
 import bpy
 import pytest
@@ -103,10 +104,21 @@ def test_a_repaired_copy_has_nothing_to_repair_and_the_object_stays():
     assert copy.name == "Fin Repaired" and copy.location.x == 2 and copy.data.materials[0] == material
     assert (len(obj.data.vertices), len(obj.data.polygons)) == before and obj.hide_get()
     assert not copy.data.validate()
+    assert max(_faces_of_edges(copy).values()) == 2
+
+
+def test_a_repaired_copy_has_nothing_to_repair():
+    faces = [TETRAHEDRON[0][::-1], *TETRAHEDRON[1:], TETRAHEDRON[1]]
+    obj = add_object("Wrong", [*CORNERS, (5, 5, 5)], faces)
     bpy.ops.object.hybrid_quad_check()
-    assert not [row for row in read_check(copy) if not row["kept"]]
-    bpy.ops.object.hybrid_quad_remesh()
-    assert not bpy.context.object.hybrid_quad.last_report == ""
+    assert {"flipped_face", "duplicate_face", "isolated_vertex"} <= set(_codes(obj))
+    assert bpy.ops.object.hybrid_quad_repair() == {"FINISHED"}
+    bpy.ops.object.hybrid_quad_check()
+    assert read_check(bpy.context.object) == []
+
+
+def _faces_of_edges(obj: bpy.types.Object) -> Counter:
+    return Counter(key for polygon in obj.data.polygons for key in polygon.edge_keys)
 
 
 def test_what_cannot_be_repaired_leaves_no_copy():

@@ -13,7 +13,7 @@ from hybrid_quad.blender import result_features
 from hybrid_quad.blender.preview import drawing, sessions
 from scenes import activate, add_cube, add_grid, add_sphere, points_of, remesh
 
-PATIENCE = 60  # seconds until a test gives up waiting
+PATIENCE = 15  # seconds until a test gives up waiting
 
 
 def show(**switches: bool) -> None:
@@ -53,7 +53,7 @@ def test_the_field_of_a_sphere_has_eight_singularities_on_its_surface():
     settle()
     assert sessions.field.counts() == [(1, 8)]
     assert sessions.field.session.target() == obj
-    for shape in shapes_of_field():
+    for shape in (shape for shape in shapes_of_field() if len(shape.points)):
         distances = np.linalg.norm(shape.points, axis=1)
         assert distances.min() > 0.8 and distances.max() < 1.2
         assert len(shape.colors) == len(shape.points)
@@ -205,5 +205,6 @@ def test_without_a_source_the_limit_surface_is_shown_all_the_same():
     obj = add_cube(segments=2)
     show(show_limit=True)
     settle()
-    assert sessions.limit.distance is None and sessions.limit.shapes(None)
-    assert np.abs(sessions.limit.shapes(None)[0].points).max() < np.abs(points_of(obj)).max()
+    assert sessions.limit.distance is None
+    (shape,) = sessions.limit.shapes(None)
+    assert np.linalg.norm(shape.points, axis=1).max() < 0.9 * np.linalg.norm(points_of(obj), axis=1).max()

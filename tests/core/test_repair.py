@@ -30,3 +30,15 @@ def test_what_was_wrong_is_right_afterwards_and_said():
 def test_what_is_no_surface_is_refused():
     with pytest.raises(hybrid_quad.InputError):
         hybrid_quad.repair([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
+
+
+def test_sheets_that_are_cut_apart_have_vertices_of_their_own():
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 2, 0)]
+    found = hybrid_quad.repair(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3), (1, 2, 4)])
+    edges = np.sort(np.stack([found.triangles, np.roll(found.triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    assert np.unique(edges, axis=0, return_counts=True)[1].max() == 2
+    own = found.vertex_origins >= 0
+    assert set(found.vertex_origins[own]) == set(range(5))
+    assert np.array_equal(found.vertices[own], np.array(corners)[found.vertex_origins[own]])
+    distances = hybrid_quad.surface_distances(found.vertices, corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3), (1, 2, 4)])
+    assert distances.max() == 0

@@ -38,7 +38,7 @@ class OBJECT_OT_hybrid_quad_repair(ActiveMeshOperator):
         for defect in found.defects:
             left = "Left as it is" if defect.kept else "Repaired"
             self.report({"WARNING"} if defect.kept else {"INFO"}, f"{left}: {describe_defect(defect.as_json())}")
-        lost = len(source.vertices) - len(np.unique(found.vertex_origins))
+        lost = len(source.vertices) - len(np.unique(found.vertex_origins[found.vertex_origins >= 0]))
         self.report(
             {"INFO"}, f'"{copy.name}": {len(found.triangles):,} triangles; {lost:,} vertices are not used any more'
         )

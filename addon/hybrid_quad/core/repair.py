@@ -20,7 +20,8 @@ class Repaired:
     vertices : (n, 3) float64
     triangles : (m, 3) int32
     vertex_origins : (n,) int32
-        The given vertex that each was.
+        The given vertex that each was; -1 for one in the middle of an edge, where sheets that were cut apart had the whole
+        edge in common and each needs one of its own.
     face_origins : (m,) int32
         The given face that each is part of.
     defects : list of Defect

@@ -115,9 +115,10 @@ class Session(Generic[Result]):
 
     def _begin(self, obj: bpy.types.Object) -> None:
         self._stop()
-        self._changed_at = None
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        self._changed_at = None  # only now: what was evaluated at last told of itself
         try:
-            self._waiting = list(self._requests(obj, bpy.context.evaluated_depsgraph_get()))
+            self._waiting = list(self._requests(obj, depsgraph))
             self._start_next()
         except Exception as error:
             self._fail(error)

@@ -16,6 +16,9 @@ from .limit import LimitPreview
 
 _SECONDS = 0.08  # between two looks
 
+# Data whose lines may guide quads, whatever object shows it.
+_LINES = (bpy.types.Curve, bpy.types.Annotation if hasattr(bpy.types, "Annotation") else bpy.types.GreasePencil)
+
 field = FieldPreview()
 limit = LimitPreview()
 
@@ -108,25 +111,25 @@ def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     active = bpy.context.view_layer.objects.active
     if active is None:
         return
-    guides = (bpy.types.Curve, bpy.types.Annotation if hasattr(bpy.types, "Annotation") else bpy.types.GreasePencil)
+    asked = settings()
     for update in depsgraph.updates:
         changed = update.id.original
-        is_own = changed in (active, active.data)
-        is_scaled = update.is_updated_transform and is_own
-        if is_own and (update.is_updated_geometry or is_scaled):
+        if changed in (active, active.data):
+            touches_field = touches_limit = update.is_updated_geometry or update.is_updated_transform
+        else:
+            touches_field = isinstance(changed, _LINES) or _is_guide(active, changed)
+            touches_limit = update.is_updated_geometry and changed.name == active.hybrid_quad.source_name
+        if touches_field and asked.show_field:
             field.session.mark_changed()
-            limit.session.mark_changed()
-        elif isinstance(changed, guides) or _is_guide(active, changed):
-            field.session.mark_changed()
-        elif changed.name == active.hybrid_quad.source_name and update.is_updated_geometry:
+        if touches_limit and asked.show_limit:
             limit.session.mark_changed()
 
 
 def _is_guide(active: bpy.types.Object, changed: bpy.types.ID) -> bool:
-    settings_of = active.hybrid_quad
-    if changed == settings_of.guide_object or changed == settings_of.guide_collection:
+    named = active.hybrid_quad
+    collection = named.guide_collection
+    if changed in (named.guide_object, collection):
         return True
-    collection = settings_of.guide_collection
     return collection is not None and isinstance(changed, bpy.types.Object) and changed.name in collection.all_objects
 
 
