@@ -40,5 +40,7 @@ def test_sheets_that_are_cut_apart_have_vertices_of_their_own():
     own = found.vertex_origins >= 0
     assert set(found.vertex_origins[own]) == set(range(5))
     assert np.array_equal(found.vertices[own], np.array(corners)[found.vertex_origins[own]])
-    distances = hybrid_quad.surface_distances(found.vertices, corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3), (1, 2, 4)])
+    distances = hybrid_quad.surface_distances(
+        found.vertices, corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3), (1, 2, 4)]
+    )
     assert distances.max() == 0

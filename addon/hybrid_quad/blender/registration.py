@@ -34,8 +34,10 @@ CLASSES = (
     *repair_operators.CLASSES,
     *presets.CLASSES,
     *limit.CLASSES,
-    *panels.CLASSES,
-    *preview_panels.CLASSES,
+    *panels.CLASSES[:1],
+    *preview_panels.CLASSES[:1],  # panels stand in the order in which they come here
+    *panels.CLASSES[1:],
+    *preview_panels.CLASSES[1:],
 )
 
 

@@ -13,6 +13,8 @@ from .shapes import Shape
 # An object and what is drawn over it.
 Drawing = tuple[bpy.types.Object, Iterable[Shape]]
 
+_MOST_LIFT = 0.3  # beyond it what lies behind would come to the front
+
 _handler: Any = None
 
 
@@ -70,7 +72,7 @@ def _draw(context: bpy.types.Context, obj: bpy.types.Object, shape: Shape) -> No
     gpu.state.blend_set("ALPHA")
     try:
         with gpu.matrix.push_pop():
-            gpu.matrix.load_matrix(_nearer(context.region_data, obj, shape.lift) @ obj.matrix_world)
+            gpu.matrix.load_matrix(_nearer(context.region_data, obj, shape) @ obj.matrix_world)
             shader.bind()
             if not is_solid:
                 shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
@@ -82,13 +84,15 @@ def _draw(context: bpy.types.Context, obj: bpy.types.Object, shape: Shape) -> No
         gpu.state.depth_test_set("NONE")
 
 
-def _nearer(view: bpy.types.RegionView3D, obj: bpy.types.Object, lift: float) -> Matrix:
+def _nearer(view: bpy.types.RegionView3D, obj: bpy.types.Object, shape: Shape) -> Matrix:
     """The view's matrix, with everything a little nearer to the eye, at the same place of the picture."""
+    gap = shape.gap * max(obj.matrix_world.to_scale())
     is_perspective = view.window_matrix[3][3] == 0
     if is_perspective:
-        # About the eye: pictures stay, depths shrink.
-        return Matrix.Scale(1.0 - lift, 4) @ view.view_matrix
-    return Matrix.Translation((0.0, 0.0, lift * max(obj.dimensions))) @ view.view_matrix
+        # About the eye: the picture stays, depths shrink.
+        distance = max((view.view_matrix @ obj.matrix_world.translation).length, max(obj.dimensions))
+        return Matrix.Scale(1.0 - min(shape.lift + gap / distance, _MOST_LIFT), 4) @ view.view_matrix
+    return Matrix.Translation((0.0, 0.0, shape.lift * max(obj.dimensions) + gap)) @ view.view_matrix
 
 
 def _shader_name(kind: str) -> str:

@@ -28,6 +28,8 @@ _SINGULARITIES: dict[int, Color] = {
     -1: (0.15, 0.35, 1.0, 1.0),
     -2: (0.6, 0.2, 0.9, 1.0),
 }
+# Small quads, usual ones, large ones: told apart on gray, and by eyes that see no red.
+_SIZES = ((0.15, 0.1, 0.7), (0.1, 0.42, 0.85), (0.1, 0.65, 0.7), (0.95, 0.55, 0.1), (0.8, 0.1, 0.05))
 _SINGULARITY_IN_EDGES = 0.28
 _SIZE_RANGE = 2.0  # red is so many times the usual size, blue as many times smaller
 _EVEN = 1.05  # sizes that differ by less count as one
@@ -130,13 +132,13 @@ def field_shapes(source: MeshSource, found: PreviewLines) -> dict[str, list[Shap
 
 
 def size_colors(sizes: Floats) -> Floats:
-    """(k, 4) colors: blue for quads of half the median size, red for those of twice; one color where all are alike."""
+    """(k, 4) colors: blue for quads of half the median size, red for those of twice it; one color where all are alike."""
     if not len(sizes):
         return np.zeros((0, 4), np.float32)
     middle = float(np.median(sizes))
     if sizes.max() < _EVEN * middle and sizes.min() * _EVEN > middle:
         return np.tile(np.array(_CROSS, np.float32), (len(sizes), 1))
-    return shapes.ramp(0.5 + 0.5 * np.log2(sizes / middle) / np.log2(_SIZE_RANGE))
+    return shapes.ramp(0.5 + 0.5 * np.log2(sizes / middle) / np.log2(_SIZE_RANGE), _SIZES)
 
 
 def _singularities(found: PreviewLines, points: Floats, source: MeshSource) -> list[Shape]:

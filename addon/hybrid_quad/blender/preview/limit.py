@@ -16,7 +16,10 @@ from ..operators import ActiveMeshOperator
 from .session import Session
 from .shapes import Floats, Shape, ramp
 
-_LIFT = 0.03  # so that the control mesh, outside of which it may lie, does not hide it
+_LIFT = 0.003
+_GAPS = 1.2  # it counts as nearer by so many times what it is from the control mesh, which would hide it
+# Near, middle, far, with middles that are light enough to be told apart without red.
+_DISTANCES = ((0.13, 0.31, 0.75), (0.55, 0.75, 0.95), (0.95, 0.95, 0.9), (0.98, 0.65, 0.35), (0.75, 0.1, 0.1))
 _SHADE = 0.35  # how much darker it is where it faces away from the light
 _LIGHT = np.array([0.4, -0.5, 0.77])
 _PLAIN = (0.75, 0.75, 0.75, 1.0)
@@ -71,15 +74,15 @@ class LimitPreview:
         levels = bpy.context.window_manager.hybrid_quad_preview.limit_levels
         return obj.hybrid_quad.source_name, levels, tuple(value for row in obj.matrix_world for value in row)
 
-    def _take(self, _obj: bpy.types.Object, found: LimitSurface) -> None:
+    def _take(self, obj: bpy.types.Object, found: LimitSurface) -> None:
         self.distance = None
         colors = np.tile(np.array(_PLAIN, np.float32), (len(found.vertices), 1))
         if len(found.distances):
             largest = float(found.distances.max())
             percent = 100.0 * largest / self._diagonal if self._diagonal else 0.0
             self.distance = Distance(largest, float(found.distances.mean()), percent)
-            colors = ramp(found.distances / largest if largest else found.distances)
-        self._shapes = [_surface_shape(found, colors, np.linalg.inv(self._matrix))]
+            colors = ramp(found.distances / largest if largest else found.distances, _DISTANCES)
+        self._shapes = [_surface_shape(found, colors, np.linalg.inv(self._matrix), _points_of(obj.data))]
 
 
 class OBJECT_OT_hybrid_quad_apply_subdivision(ActiveMeshOperator):
@@ -132,14 +135,17 @@ def _surface_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[
     return _in_world(_points_of(obj.data), matrix), _polygons_of(obj.data)
 
 
-def _surface_shape(found: LimitSurface, colors: Floats, from_world: FloatArray) -> Shape:
+def _surface_shape(found: LimitSurface, colors: Floats, from_world: FloatArray, control: FloatArray) -> Shape:
+    """The surface in object space. `control`: vertices of the control mesh, to which the first of the surface belong."""
     light = _LIGHT / np.linalg.norm(_LIGHT)
     shade = (1.0 - _SHADE * (0.5 - 0.5 * (found.normals @ light))).astype(np.float32)
     shaded = colors.copy()
     shaded[:, :3] *= shade[:, None]
     triangles = np.concatenate([found.quads[:, [0, 1, 2]], found.quads[:, [0, 2, 3]]])
     points = _in_world(found.vertices, from_world).astype(np.float32)
-    return Shape("TRIS", points, shaded, np.ascontiguousarray(triangles, np.int32), lift=_LIFT)
+    count = min(len(control), len(points))
+    gap = _GAPS * float(np.linalg.norm(points[:count] - control[:count], axis=1).max())
+    return Shape("TRIS", points, shaded, np.ascontiguousarray(triangles, np.int32), lift=_LIFT, gap=gap)
 
 
 def _in_world(points: FloatArray, matrix: FloatArray) -> FloatArray:

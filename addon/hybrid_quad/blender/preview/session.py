@@ -14,7 +14,7 @@ from ...worker.process import WorkerRun
 from ..operators import message_of
 from ..source_track import identity
 
-_CALM = 0.15  # seconds without a change after which it is worth while to start
+_CALM = 0.1  # seconds without a change after which it is worth while to start
 # Where the mesh that an object shows can be read.
 _MODES = {"OBJECT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT"}
 

@@ -28,6 +28,8 @@ class Shape:
     lift : float
         How much nearer than it is it counts as, as a part of its distance from the eye: more than what is to be hidden by
         it is in front of it.
+    gap : float
+        The same as a length in the space of the object, to be added.
     batch : object
         What the graphics card has of it, once it was drawn.
     """
@@ -38,6 +40,7 @@ class Shape:
     indices: npt.NDArray[np.int32] | None = None
     width: float = 1.0
     lift: float = 0.002
+    gap: float = 0.0
     batch: Any = field(default=None, repr=False)
 
 
@@ -80,13 +83,13 @@ def solids(middles: npt.NDArray[Any], sizes: npt.NDArray[Any], colors: npt.NDArr
     )
 
 
-def ramp(values: npt.NDArray[Any]) -> Floats:
-    """(k, 4) colors from blue (0) over white to red (1), of much the same brightness for eyes that see no red."""
-    stops = np.array([[0.13, 0.31, 0.75], [0.55, 0.75, 0.95], [0.95, 0.95, 0.9], [0.98, 0.65, 0.35], [0.75, 0.1, 0.1]])
-    at = np.clip(np.asarray(values, np.float64), 0.0, 1.0) * (len(stops) - 1)
+def ramp(values: npt.NDArray[Any], stops: npt.ArrayLike) -> Floats:
+    """(k, 4) colors between evenly spaced stops, (s, 3), for values from 0 to 1."""
+    table = np.asarray(stops, np.float64)
+    at = np.clip(np.asarray(values, np.float64), 0.0, 1.0) * (len(table) - 1)
     colors = np.ones((len(at), 4), np.float32)
     for channel in range(3):
-        colors[:, channel] = np.interp(at, np.arange(len(stops)), stops[:, channel])
+        colors[:, channel] = np.interp(at, np.arange(len(table)), table[:, channel])
     return colors
 
 
