@@ -23,7 +23,7 @@ from hybrid_quad.worker.death import WorkerDied
 from hybrid_quad.worker.kinds import load_request
 from hybrid_quad.worker.limit_request import LimitRequest
 from hybrid_quad.worker.preview_request import PreviewRequest
-from hybrid_quad.worker.process import WorkerRun
+from hybrid_quad.worker.process import WorkerRun, WorkerSeat
 from hybrid_quad.worker.request import RemeshRequest
 
 NO_EDGES = np.zeros((0, 2), np.int32)
@@ -123,6 +123,15 @@ def test_a_limit_surface_is_that_of_this_process(start):
     for name in ("vertices", "normals", "quads", "distances"):
         assert np.array_equal(getattr(found, name), getattr(expected, name)), name
     assert 0 < found.distances.max() < 0.1
+
+
+def test_a_seat_waits_for_its_request_and_can_be_left(start, tmp_path):
+    seat, unused = (WorkerSeat(temporary_folder=str(tmp_path)) for _ in range(2))
+    time.sleep(0.5)
+    assert seat.is_there() and unused.is_there()
+    assert len(start(wave(quads=200), seat=seat).result().quads) > 100
+    unused.leave()
+    assert not unused.is_there() and is_gone(unused.process.pid)
 
 
 def solve(request):

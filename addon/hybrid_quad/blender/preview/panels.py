@@ -11,8 +11,6 @@ from . import sessions
 from .limit import OBJECT_OT_hybrid_quad_apply_subdivision
 from .session import Session
 
-_KINDS = {1: "three quads meet", -1: "five quads meet", 2: "two quads meet", -2: "six quads meet"}
-
 
 class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
     """What remeshing would follow."""
@@ -46,10 +44,9 @@ class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
         rows = layout.column(align=True)
         for quarters, count in sessions.field.counts():
             icon = "SPHERE" if quarters > 0 else "CUBE"
-            meaning = _KINDS.get(quarters, f"{4 - quarters} quads meet")
-            rows.label(text=f"{count:,} x {quarters:+d}/4: {meaning}", icon=icon)
+            rows.label(text=f"{count:,} x {quarters:+d}/4: {4 - quarters} quads", icon=icon)
         if not len(found.singular_quarters):
-            rows.label(text="No singularities off the features", icon="CHECKMARK")
+            rows.label(text="No singularities", icon="CHECKMARK")
         rows.label(text=f"About {found.report['wanted_quads']:,.0f} quads")
         for warning in found.report["warnings"]:
             rows.label(text=warning, icon="ERROR")
@@ -72,12 +69,13 @@ class VIEW3D_PT_hybrid_quad_limit(HybridQuadPanel, bpy.types.Panel):
         asked = sessions.settings()
         column = layout.column()
         column.active = asked.show_limit
-        column.prop_search(context.object.hybrid_quad, "source_name", bpy.data, "objects", text="Compare With")
+        column.prop_search(context.object.hybrid_quad, "source_name", bpy.data, "objects", text="Source")
         column.prop(asked, "limit_levels")
         if asked.show_limit:
             _draw_state(layout, sessions.limit.session)
             _draw_distance(layout)
-        operator = layout.operator(OBJECT_OT_hybrid_quad_apply_subdivision.bl_idname, icon="MOD_SUBSURF")
+        name = OBJECT_OT_hybrid_quad_apply_subdivision.bl_idname
+        operator = layout.operator(name, text="Apply as Modifier", icon="MOD_SUBSURF")
         operator.levels = asked.limit_levels
 
 
@@ -99,9 +97,9 @@ def _draw_distance(layout: Any) -> None:
         return
     rows = layout.column(align=True)
     for name, value in (
-        ("Largest distance (red)", f"{distance.largest:.4g}"),
-        ("of the diagonal", f"{distance.percent:.3f} %"),
-        ("Mean distance", f"{distance.mean:.4g}"),
+        ("Largest (red)", f"{distance.largest:.4g}"),
+        ("Of the diagonal", f"{distance.percent:.3f} %"),
+        ("Mean", f"{distance.mean:.4g}"),
     ):
         row = rows.row()
         row.label(text=name)

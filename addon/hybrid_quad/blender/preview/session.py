@@ -10,7 +10,7 @@ import bpy
 
 from ...worker.interpreter import worker_command
 from ...worker.kinds import Request
-from ...worker.process import WorkerRun
+from ...worker.process import WorkerRun, WorkerSeat
 from ..operators import message_of
 from ..source_track import identity
 
@@ -57,6 +57,7 @@ class Session(Generic[Result]):
         self._changed_at: float | None = None
         self._worker: WorkerRun[Result] | None = None
         self._waiting: list[Request[Result]] = []
+        self._seat: WorkerSeat | None = None  # waits for the next change
 
     @property
     def is_busy(self) -> bool:
@@ -95,7 +96,7 @@ class Session(Generic[Result]):
             self.clear()
             return had_any
         if identity(obj) != self._object:
-            self.clear()
+            self._forget()
             self._object = identity(obj)
             self.mark_changed()
         signature = self._signature(obj)
@@ -109,7 +110,13 @@ class Session(Generic[Result]):
         return self._look(obj)
 
     def clear(self) -> None:
-        """Ends the worker and forgets all."""
+        """Ends every process and forgets all."""
+        self._forget()
+        seat, self._seat = self._seat, None
+        if seat is not None:
+            seat.leave()
+
+    def _forget(self) -> None:
         self._stop()
         self.error, self.result, self._object, self._seen, self._changed_at = "", None, None, None, None
 
@@ -124,13 +131,11 @@ class Session(Generic[Result]):
             self._fail(error)
 
     def _start_next(self) -> None:
-        if not self._waiting:
-            return
-        self._worker = WorkerRun(
-            self._waiting.pop(0),
-            temporary_folder=bpy.app.tempdir or None,
-            command=worker_command(host=bpy.app.binary_path),
-        )
+        seat, self._seat = self._seat, None
+        if seat is not None and not seat.is_there():  # the system may have ended it
+            seat.leave()
+            seat = None
+        self._worker = WorkerRun(self._waiting.pop(0), seat=seat or _new_seat())
 
     def _look(self, obj: bpy.types.Object) -> bool:
         if self._worker is None or not self._worker.poll():
@@ -140,7 +145,10 @@ class Session(Generic[Result]):
             self.result = worker.result()
             self.error = ""
             self._accept(obj, self.result)
-            self._start_next()
+            if self._waiting:
+                self._start_next()
+            else:
+                self._seat = self._seat or _new_seat()
         except Exception as error:
             self._fail(error)
         return True
@@ -155,3 +163,7 @@ class Session(Generic[Result]):
         self._waiting.clear()
         if worker is not None:
             worker.cancel()
+
+
+def _new_seat() -> WorkerSeat:
+    return WorkerSeat(temporary_folder=bpy.app.tempdir or None, command=worker_command(host=bpy.app.binary_path))

@@ -142,4 +142,4 @@ def _on_load(*_arguments: Any) -> None:
 def _after_load(*_arguments: Any) -> None:
     """A file brings the settings of the window that saved it along; nothing is shown that nobody asked for now."""
     asked = settings()
-    asked["show_field"] = asked["show_limit"] = False
+    asked.show_field = asked.show_limit = False
