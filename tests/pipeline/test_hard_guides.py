@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 import hybrid_quad
+from guides import PLACES, section
 from hybrid_quad import Stroke
 from hybrid_quad.cli.main import main
+from hybrid_quad.core.mesh_arrays import as_polygons
+from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.surface_points import fan_triangles
 from support import surfaces
 from support.results import assert_sound
 
@@ -60,6 +64,17 @@ def test_a_loop_is_a_chain_of_feature_edges_that_lies_where_it_was_drawn():
     off_plane = np.abs(middle[:, 0] * np.sin(0.3) - middle[:, 1] * np.cos(0.3))
     off_tube = np.abs(np.hypot(np.hypot(middle[:, 0], middle[:, 1]) - 1, middle[:, 2]) - TUBE)
     assert off_plane.max() < 0.1 * length and off_tube.max() < 0.1 * length
+
+
+def test_loops_that_bend_within_an_edge_of_a_crossing_are_met(models):
+    """With 1000 quads, the second needs a corner that is only known once it was missed (decision 16)."""
+    model = "c3d_spot_triangulated"
+    vertices, polygons = read_mesh(models / f"{model}.obj")
+    lines = [section(vertices, fan_triangles(as_polygons(polygons)), *place) for place in PLACES[model]["crossing"]]
+    strokes = [Stroke(line, kind="loop") for line in lines]
+    result = hybrid_quad.remesh(vertices, polygons, quads=1000, sharp_angle=None, strokes=strokes)
+    assert_sound(result, polygons)
+    assert all(guide["met"] and guide["distance"] <= 0.1 for guide in result.report["guides"])
 
 
 def test_a_loop_may_cross_a_sharp_edge():

@@ -121,6 +121,8 @@ struct GuideFit {
   double angle = 0;        ///< of a ring: largest deviation from a right angle (degrees)
   bool is_connected = false;  ///< the edges are one chain (one strip) for each run of the guide
   int edges = 0;
+
+  static constexpr double kNear = 0.1;  ///< a guide that is met is as near as that (edge lengths)
 };
 
 /// \param chains  edges that follow guides  \param rings  edges that guides cross

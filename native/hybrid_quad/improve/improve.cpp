@@ -136,8 +136,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
                             const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
-  constexpr int kAttempts = 5, kMany = 12;
-  constexpr double kFewer = 0.8;
+  constexpr int kAttempts = 5;
   const SurfaceIndex& judged = whole ? *whole : index;
   Restoration restoration(quads, judged, options.enough_area, context.threads);
   QuadMesh best;
@@ -149,10 +148,9 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();
-    // Where so many are flawed that locking a few places makes no difference, another attempt would not either.
-    const bool is_hopeless = attempt > 0 && now.flawed_after > kMany && now.flawed_after > kFewer * report.flawed_after;
-    const bool go_on = !flawed.empty() && !is_hopeless && restoration.give_up_around(improved, flawed);
-    if (attempt == 0 || now.flawed_after < report.flawed_after) {
+    const bool is_better = attempt == 0 || now.flawed_after < report.flawed_after;
+    const bool go_on = !flawed.empty() && is_better && restoration.give_up_around(improved, flawed);
+    if (is_better) {
       best = std::move(improved);
       report = now;
     }

@@ -15,8 +15,7 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr double kNear = 0.1;     ///< edge lengths: a guide that is met is as near as that
-constexpr double kSquare = 10;    ///< degrees: a ring that is met crosses edges as squarely as that
+constexpr double kSquare = 10;  ///< degrees: a ring that is met crosses edges as squarely as that
 
 /// Where a new vertex lies in the mesh before.
 struct Place {
@@ -141,7 +140,7 @@ std::string shortcoming(int guide, const GuideRecord& record) {
   const std::string name = "guide " + std::to_string(guide) + (is_ring ? " (ring) " : " (loop) ");
   if (record.fit.edges == 0 && is_ring) return name + "could not be made a strip: it is a chain of edges instead";
   if (!record.fit.is_connected) return name + "is not followed all along";
-  if (record.fit.distance > kNear) return name + "is up to " + text(record.fit.distance, "%.2f") + " edge lengths from its edges";
+  if (record.fit.distance > GuideFit::kNear) return name + "is up to " + text(record.fit.distance, "%.2f") + " edge lengths from its edges";
   return name + "crosses edges up to " + text(record.fit.angle, "%.0f") + " degrees from a right angle";
 }
 
@@ -210,7 +209,7 @@ std::vector<GuideRecord> measure_guides(const std::vector<GuideStroke>& strokes,
     const int guide = static_cast<int>(i);
     record.fit = record.kind == GuideKind::kRing ? measure_ring(traces[i], quads, guided.rings, guide)
                                                  : measure_loop(traces[i], quads, guided.chains, guide);
-    record.is_met = record.fit.edges > 0 && record.fit.is_connected && record.fit.distance <= kNear && record.fit.angle <= kSquare;
+    record.is_met = record.fit.edges > 0 && record.fit.is_connected && record.fit.distance <= GuideFit::kNear && record.fit.angle <= kSquare;
     if (!record.is_met && !traces[i].runs.empty()) warnings.push_back(shortcoming(guide, record));
     records.push_back(record);
   }

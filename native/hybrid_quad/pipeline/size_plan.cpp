@@ -48,17 +48,20 @@ std::vector<char> on_edges(const TriangleMesh& mesh, const std::vector<std::arra
   return found;
 }
 
-/// Vertices at tight bends of hard guides become corners.
-void add_guide_corners(ComponentPlan& plan) {
-  std::vector<char> on_guide(plan.features.curves.size(), 0), is_feature(plan.mesh.halfedge_count());
-  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
-    is_feature[h] = plan.features.is_feature(h);
-    if (is_feature[h] && plan.guides[h] >= 0) on_guide[plan.features.halfedge_curve[h]] = 1;
-  }
-  const std::vector<int> corners = tight_bends(plan.mesh, plan.features, on_guide, plan.length);
-  if (corners.empty()) return;
+void add_corners(ComponentPlan& plan, const std::vector<int>& corners) {
+  std::vector<char> is_feature(plan.mesh.halfedge_count());
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) is_feature[h] = plan.features.is_feature(h);
   plan.corners.insert(plan.corners.end(), corners.begin(), corners.end());
   plan.features = trace_features(plan.mesh, is_feature, FeatureOptions{}.corner_angle, plan.corners);
+}
+
+/// Vertices at tight bends of hard guides become corners.
+void add_guide_corners(ComponentPlan& plan) {
+  std::vector<char> on_guide(plan.features.curves.size(), 0);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.guides[h] >= 0) on_guide[plan.features.halfedge_curve[h]] = 1;
+  const std::vector<int> corners = tight_bends(plan.mesh, plan.features, on_guide, plan.length);
+  if (!corners.empty()) add_corners(plan, corners);
 }
 
 /// How much longer edges are made than they were planned.
@@ -232,6 +235,15 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
   for (ComponentPlan& plan : plans) plan_lengths(plan, mirror_planes, context);
   balance_plans(plans, quads_asked);
   return true;
+}
+
+ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes,
+                           const RunContext& context) {
+  ComponentPlan with = plan;
+  add_corners(with, corners);
+  plan_lengths(with, mirror_planes, context);
+  scale_plan(with, plan.quads / with.quads);
+  return with;
 }
 
 void scale_plan(ComponentPlan& plan, double quads_factor) {

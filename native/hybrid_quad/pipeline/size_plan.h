@@ -57,6 +57,9 @@ void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
 /// \returns whether any did
 bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, PlaneSet mirror_planes, const RunContext& context);
 
+/// The plan for as many quads with more vertices as corners, where a feature passes.
+ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes, const RunContext& context);
+
 /// The same lengths for more or fewer quads.
 void scale_plan(ComponentPlan& plan, double quads_factor);
 

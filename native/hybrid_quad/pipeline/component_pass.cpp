@@ -1,0 +1,371 @@
+#include "hybrid_quad/pipeline/component_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hybrid_quad/assemble/assemble.h"
+#include "hybrid_quad/assemble/feature_chains.h"
+#include "hybrid_quad/mesh/quad_count.h"
+#include "hybrid_quad/mesh/straight_quads.h"
+#include "hybrid_quad/pipeline/count_search.h"
+#include "hybrid_quad/pipeline/curve_counts.h"
+#include "hybrid_quad/pipeline/extraction.h"
+#include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/finishing.h"
+#include "hybrid_quad/pipeline/guide_curves_in_quads.h"
+#include "hybrid_quad/pipeline/settle_count.h"
+#include "hybrid_quad/pipeline/snapshots.h"
+#include "hybrid_quad/sizing/feature_size.h"
+#include "hybrid_quad/sizing/sizing.h"
+#include "hybrid_quad/symmetry/symmetry.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+/// How the extraction is tried when a stage's promise breaks: as designed, with integers as Psi gives them, and with no
+/// regular part at all, where only the patches' guarantee is needed.
+enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
+
+constexpr double kShorterWhereFlawed = 0.6;
+constexpr double kShareOfTolerance = 0.6;  ///< that rows of quads are fitted to: improvement takes its own
+/// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
+double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
+
+template <class Violations>
+void require_sound(const std::string& stage, const Violations& violations) {
+  if (!violations.empty()) throw InternalError(stage, violations.front());
+}
+
+class ComponentRemesher {
+ public:
+  /// \param whole  the surface that the component is part of
+  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+                    const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings, StageClock& clock,
+                    const RunContext& context)
+      : plan_(plan),
+        mesh_(plan.mesh),
+        whole_(whole),
+        wishes_(wishes),
+        guides_(guides),
+        options_(options),
+        finishing_(plan, whole, wishes, options),
+        settings_(settings),
+        clock_(clock),
+        context_(context) {}
+
+  ComponentResult run() {
+    result_.area = mesh_.total_area();
+    prepare();
+    const FrameField unit = solve_field();
+    take(extract_with_count(unit));
+    result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
+    require_valid("improve", result_.mesh);
+    result_.flawed_quads = static_cast<int>(finishing_.flawed(result_.mesh, context_.threads).size());
+    const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);
+    result_.doubtful_quads = static_cast<int>(doubtful.size());
+    for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
+    return std::move(result_);
+  }
+
+  ComponentPreview preview(bool with_quads) {
+    prepare();
+    const FrameField unit = solve_field();
+    if (with_quads) {
+      Extraction quads = extract_by_any_means(unit, plan_.quads, plan_.quads);
+      finishing_.make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
+      quads.features = plan_.features;
+      take(std::move(quads));
+    } else {
+      sized_ = as_large_as_asked(unit);
+    }
+    return {std::move(surface_), std::move(sized_), std::move(result_)};
+  }
+
+ private:
+  void prepare() {
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
+    surface_ = clock_.measure("working surface", [&] {
+      return build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_),
+                                   context_.in_stage("working surface", 0, 0.2));
+    });
+    result_.working_faces = surface_.mesh.face_count();
+    // Shapes that it did not reach may still do: what is assembled is checked against the input again.
+    for (const std::string& violation : violations_of(surface_, mesh_, plan_.features)) {
+      ++result_.repairs.broken_promises;
+      result_.warnings.push_back("the working surface is not as promised: " + violation);
+      break;
+    }
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
+  }
+
+  FrameField solve_field() {
+    const RunContext context = context_.in_stage("frame field", 0.2, 0.3);
+    FrameField unit = clock_.measure("frame field", [&] {
+      const FrameFieldOptions o = field_options(surface_, wishes_, options_);
+      FrameField field = solve_frame_field(surface_, o, context);
+      direction_weight_ = direction_weights(o);
+      stretch_ = stretch_of(surface_, field, wishes_, options_);
+      return field;
+    });
+    result_.field_singularities = unit.singularity_count();
+    result_.feature_singularities = unit.feature_cones;
+    result_.field_choice = unit.choice;
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(unit, surface_, "frame field"));
+    return unit;
+  }
+
+  /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked; where that
+  /// does not help at once, rows of quads are split or taken out.
+  Extraction extract_with_count(const FrameField& unit) {
+    constexpr int kTriesWithoutRows = 1;
+    const int tries = most_tries();
+    CountSearch search(plan_.quads, least_to_ask());
+    ExtractionChoice choice = choice_of_tries(tries);
+    for (int i = 0; i < tries; ++i) {
+      const bool is_stuck = search.at_least() || search.is_stuck();
+      if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
+      const bool is_last = i + 1 == tries || is_stuck;
+      const bool with_rows = !settings_.as_needed && (is_last || i >= kTriesWithoutRows);
+      Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
+      result_.extracted_quads += current.count();
+      result_.work += result_.working_faces;
+      const double before_rows = current.quads_before_rows;
+      if (choice.is_far(current)) {
+        choice.set_aside(std::move(current));
+        search.record(before_rows / choice.lost());
+        if (!is_last) continue;
+        if (choice.any()) break;
+        current = choice.nearest_set_aside();
+      }
+      const double extracted = current.count();
+      finish(current);
+      choice.take(std::move(current), extracted);
+      if (is_last || choice.is_done()) break;
+      search.record(before_rows / choice.lost());
+    }
+    return choice.best();
+  }
+
+  int most_tries() const {
+    constexpr int kOfMany = 4, kOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
+    return plan_.quads < kFew && settings_.quads_factor == 1 && !settings_.as_needed ? kOfFew : kOfMany;
+  }
+
+  /// Passes with as many quads as it takes are there for flawed quads: there the count matters less.
+  ExtractionChoice choice_of_tries(int tries) const {
+    constexpr double kNearAsNeeded = 0.15, kLastResort = 2, kFar = 0.15, kRough = 0.5;
+    if (settings_.is_rough) return ExtractionChoice(plan_.quads, kRough, 1, kRough);
+    if (!settings_.as_needed) return ExtractionChoice(plan_.quads, count_tolerance(), 2, kFar);
+    return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries, kFar);
+  }
+
+  /// Rows that counted curves call for are not paid for by ever larger quads everywhere else.
+  double least_to_ask() const {
+    constexpr double kLeastBesideCounts = 0.6;
+    const auto& curves = plan_.features.curves;
+    const bool any = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
+    return any ? kLeastBesideCounts * plan_.quads : 0;
+  }
+
+  /// Of the logarithm of the number of quads.
+  double count_tolerance() const {
+    constexpr double kTolerance = 0.035, kToleranceInQuads = 2;
+    return std::max(kTolerance, kToleranceInQuads / plan_.quads);
+  }
+
+  /// What is written can be held by an indexed mesh, and has the surface's topology there too.
+  void require_valid(const std::string& stage, const QuadMesh& mesh) const {
+    require_sound(stage, violations_of(mesh));
+    if (euler_characteristic(mesh) != mesh_.euler_characteristic())
+      throw InternalError(stage, "the quads, by their vertices, have another topology than the surface");
+  }
+
+  void finish(Extraction& extraction) {
+    if (options_.improve) improve(extraction);
+    finishing_.make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
+    extraction.missed = missed_counts(plan_.features, extraction.mesh);
+    settle_hard_guides(extraction);
+  }
+
+  void take(Extraction best) {
+    result_.dislocations_found = best.param.dislocations_found;
+    result_.dislocations = best.param.dislocations_left;
+    result_.patches = {best.patch_count, best.patch_count - best.combinatorial_count, best.combinatorial_count, 0};
+    result_.singular_area = best.singular_area;
+    result_.combinatorial_area = best.combinatorial_area;
+    result_.repairs += best.repairs;
+    result_.missed_counts = best.missed;
+    result_.mesh = std::move(best.mesh);
+    result_.rings = std::move(best.rings);
+    result_.chains = std::move(best.chains);
+    result_.features = plan_.guides.empty() ? plan_.features : std::move(best.features);
+    result_.curve_planes = seam_planes(mesh_, result_.features, options_.symmetry.planes);
+  }
+
+  /// \param wanted  number of quads to be met by rows; 0: as many as come out
+  Extraction extract_by_any_means(const FrameField& unit, double asked, double wanted) {
+    for (const Attempt attempt : {Attempt::kFull, Attempt::kWithoutCancellation}) {
+      try {
+        return extract(unit, asked, wanted, attempt);
+      } catch (const InternalError& error) {
+        ++result_.repairs.broken_promises;
+        result_.warnings.push_back(std::string("fell back after a broken promise in ") + error.what());
+      }
+    }
+    return extract(unit, asked, wanted, Attempt::kPatchesOnly);
+  }
+
+  /// Without regard to what fits together, which is what takes its time.
+  FrameField as_large_as_asked(FrameField unit) const {
+    for (int f = 0; f < surface_.mesh.face_count(); ++f) {
+      unit.du[f] /= surface_.target_length[f];
+      unit.dv[f] /= surface_.target_length[f];
+    }
+    return unit;
+  }
+
+  /// Frames for a number of quads. Where that only scales them, they are solved for once.
+  FrameField sized_frames(const FrameField& unit, double asked) {
+    return clock_.measure("sizing", [&] {
+      if (!sized_.du.empty() && quads_only_scale(surface_)) {
+        scale_to_quads(surface_.mesh, asked, sized_);
+        return sized_;
+      }
+      SizingOptions o;
+      constexpr double kWhereAsked = 100;  // sizes that someone asked for count more than even ones
+      const bool asked_sizes = !wishes_.density.empty() || !wishes_.corner_frames.empty();
+      const double fidelity = curl_weight_of(options_.size_fidelity) * (asked_sizes ? kWhereAsked : 1);
+      o.curl_weight = std::max(settings_.curl_weight, fidelity);
+      o.direction_weight = direction_weight_;
+      o.stretch = stretch_;
+      sized_ = apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4)).field;
+      return sized_;
+    });
+  }
+
+  Extraction extract(const FrameField& unit, double asked, double wanted, Attempt attempt) {
+    const FrameField frames = sized_frames(unit, asked);
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(frames, surface_, "sizing"));
+    const PeriodicField psi = clock_.measure("periodic field", [&] {
+      PeriodicFieldOptions o;
+      o.solver = options_.solver;
+      o.strip_rows = options_.narrow_quads;
+      return solve_periodic_field(surface_, frames, o, context_.in_stage("periodic field", 0.4, 0.55));
+    });
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(psi, surface_));
+    Extraction out;
+    out.param = clock_.measure("spanning parameterization", [&] {
+      SpanningOptions o;
+      o.strip_rows = options_.narrow_quads;
+      o.cancel_dislocations = attempt == Attempt::kFull;
+      return build_spanning_parameterization(surface_, frames, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
+    });
+    if (attempt == Attempt::kPatchesOnly) std::fill(out.param.is_regular.begin(), out.param.is_regular.end(), 0);
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.param, surface_));
+    RegularQuads regular = clock_.measure("regular quads", [&] {
+      return extract_regular_quads(surface_, frames, out.param, context_.in_stage("regular quads", 0.7, 0.76));
+    });
+    require_sound("regular quads", violations_of(regular));
+    SingularPatches singular = clock_.measure("singular patches", [&] {
+      return fill_singular_patches(surface_, frames, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
+    });
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(regular, singular));
+    out.mesh = clock_.measure("assemble", [&] {
+      QuadComplex complex = assemble_quads(surface_, regular, singular);
+      require_sound("assemble", violations_of(complex));
+      if (euler_characteristic(complex) != mesh_.euler_characteristic())
+        throw InternalError("assemble", "the quads have another topology than the surface");
+      std::vector<char> counted;
+      for (const FeatureCurve& curve : plan_.features.curves) counted.push_back(curve.asked_count > 0);
+      const ComplexRepairReport repair = repair_complex(complex, counted);
+      out.repairs.released_quads = singular.released_cells;
+      out.repairs.removed_quads = repair.cancelled_singlets + repair.merged_doublets;
+      out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
+      out.repairs.split_polychords = repair.split_polychords;
+      out.quads_before_rows = complex.quad_count();
+      if (wanted > 0 && plan_.guides.empty() && wishes_.most_stretch <= 1)
+        out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted);
+      out.repairs.opened_straight_quads = open_straight_quads(complex);
+      open_seams(complex, plan_.curve_planes);
+      QuadMesh mesh = to_quad_mesh(complex);
+      order_feature_edges(mesh, mesh_, plan_.features);
+      return mesh;
+    });
+    require_valid("assemble", out.mesh);
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.mesh, "assemble"));
+    out.patch_count = static_cast<int>(singular.patches.size());
+    out.singular_area = singular.singular_area;
+    for (const FilledPatch& p : singular.patches) {
+      out.combinatorial_count += p.combinatorial;
+      if (p.combinatorial) out.combinatorial_area += p.area;
+    }
+    return out;
+  }
+
+  /// A limit below the length that was asked at quad q.
+  LengthLimit shorter_at(const SurfaceIndex& index, int q) const {
+    Vector3 centre = Vector3::Zero();
+    for (const int v : result_.mesh.quads[q]) centre += 0.25 * result_.mesh.positions[v];
+    double length = std::numeric_limits<double>::infinity();
+    for (const int v : mesh_.face(index.nearest(centre).face)) length = std::min(length, plan_.target[v]);
+    return {centre, kShorterWhereFlawed * length};
+  }
+
+  void improve(Extraction& extraction) {
+    const RunContext context = context_.in_stage("improve", 0.83, 0.97);
+    const ImproveReport report = clock_.measure("improve", [&] { return finishing_.improve(extraction.mesh, context); });
+    extraction.repairs.mended_places += report.mended;
+    extraction.repairs.restored_quads += report.restored_quads;
+    extraction.flawed = report.flawed_after;
+    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
+  }
+
+  void settle_hard_guides(Extraction& extraction) {
+    if (plan_.guides.empty()) return;
+    const RunContext context = context_.in_stage("hard guides", 0.97, 0.97);
+    clock_.measure("hard guides", [&] {
+      GuidedQuads guided{std::move(extraction.mesh), plan_.features, {}, {}, extraction.flawed};
+      settle_guides(guided, plan_, guides_, finishing_.options(), options_, whole_, context);
+      extraction.mesh = std::move(guided.mesh);
+      extraction.features = std::move(guided.features);
+      extraction.rings = std::move(guided.rings);
+      extraction.chains = std::move(guided.chains);
+      extraction.flawed = guided.flawed;
+    });
+    require_sound("hard guides", violations_of(extraction.mesh));
+    keep_clear_of_planes(extraction.mesh, options_.symmetry.planes);
+  }
+
+  const ComponentPlan& plan_;
+  const TriangleMesh& mesh_;
+  const SurfaceIndex& whole_;
+  const Wishes& wishes_;
+  const HardGuides& guides_;
+  const RemeshOptions& options_;
+  Finishing finishing_;
+  const PassSettings& settings_;
+  StageClock& clock_;
+  const RunContext& context_;
+  WorkingSurface surface_;
+  FrameField sized_;  ///< of the latest try
+  std::vector<double> direction_weight_;  ///< see SizingOptions
+  std::vector<Eigen::Matrix3d> stretch_;
+  ComponentResult result_;
+};
+
+}  // namespace
+
+ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
+                         const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context) {
+  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).run();
+}
+
+ComponentPreview preview_pass(const ComponentPlan& plan, bool with_quads, const SurfaceIndex& whole, const Wishes& wishes,
+                              const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
+                              StageClock& clock, const RunContext& context) {
+  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).preview(with_quads);
+}
+
+}  // namespace hybrid_quad

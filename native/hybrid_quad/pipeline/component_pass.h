@@ -1,0 +1,26 @@
+#pragma once
+
+#include "hybrid_quad/pipeline/component.h"
+
+namespace hybrid_quad {
+
+/// Settings of one whole pass over a component.
+struct PassSettings {
+  double quads_factor = 1.0;
+  double curl_weight = 1e-5;
+  bool as_needed = false;  ///< nothing gives way for the number of quads
+  bool is_rough = false;   ///< the number is met afterwards, quad by quad
+};
+
+/// All stages from the working surface to the improved quads, with tries at the number of quads.
+/// \param whole  the surface that the component is part of
+/// \throws InternalError where a stage's promise broke and no way around it was left
+ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
+                         const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context);
+
+/// Its first stages: to the field, scaled to the asked lengths, or to the quads of one try.
+ComponentPreview preview_pass(const ComponentPlan& plan, bool with_quads, const SurfaceIndex& whole, const Wishes& wishes,
+                              const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
+                              StageClock& clock, const RunContext& context);
+
+}  // namespace hybrid_quad
