@@ -104,6 +104,22 @@ def test_a_change_of_settings_or_mesh_is_followed_and_other_objects_are_not():
     assert sessions.field.session.target() == cube and len(sessions.field.session.result.features) > 0
 
 
+def test_sculpt_mode_is_followed_and_edit_mode_when_it_is_left():
+    obj = add_grid()
+    show(show_field=True)
+    settle()
+    for mode in ("SCULPT", "EDIT"):
+        bpy.ops.object.mode_set(mode=mode)
+        obj.hybrid_quad.quads += 100
+        before = sessions.field.session.result
+        sessions.step(at_once=True)
+        if mode == "EDIT":
+            assert sessions.field.session.status == "Waiting"
+            bpy.ops.object.mode_set(mode="OBJECT")
+        settle()
+        assert sessions.field.session.result is not before, mode
+
+
 def test_an_object_without_a_surface_says_so():
     obj = add_grid()
     obj.scale.x = 0
