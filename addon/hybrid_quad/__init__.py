@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from .core.check import Defect, check
     from .core.mesh_objects import mesh_arrays
     from .core.options import RemeshOptions
+    from .core.preview import Preview, preview
     from .core.remesh import RemeshResult, remesh
+    from .core.repair import Repaired, repair
     from .core.strokes import Stroke, guides_from_strokes
+    from .core.subdivision import Subdivided, subdivide, surface_distances
 
 bl_info = {
     "name": "Hybrid Quad",
@@ -34,13 +37,20 @@ __all__ = [
     "Defect",
     "InputError",
     "InternalError",
+    "Preview",
     "RemeshOptions",
     "RemeshResult",
+    "Repaired",
     "Stroke",
+    "Subdivided",
     "check",
     "guides_from_strokes",
     "mesh_arrays",
+    "preview",
     "remesh",
+    "repair",
+    "subdivide",
+    "surface_distances",
 ]
 
 # Names that need numpy or the compiled module are loaded on first use, so that Blender can register the add-on, and
@@ -49,11 +59,18 @@ _MODULE_OF = {
     "Defect": "check",
     "check": "check",
     "mesh_arrays": "mesh_objects",
+    "Preview": "preview",
+    "preview": "preview",
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "Repaired": "repair",
+    "repair": "repair",
     "Stroke": "strokes",
     "guides_from_strokes": "strokes",
+    "Subdivided": "subdivision",
+    "subdivide": "subdivision",
+    "surface_distances": "subdivision",
 }
 
 

@@ -279,6 +279,10 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     last_report: bpy.props.StringProperty(
         name="Last Report", description="Report of the latest run as JSON", options={"HIDDEN"}
     )
+    source_name: bpy.props.StringProperty(
+        name="Made Of",
+        description="Object that these quads were made of: their subdivision surface is compared with it",
+    )
     last_check: bpy.props.StringProperty(
         name="Last Check", description="What the latest check found, as JSON", options={"HIDDEN"}
     )

@@ -112,8 +112,11 @@ def prepare_task(
     threads: int = 0,
     time_limit: float | None = None,
     memory_limit: float | None = None,
+    for_result: bool = True,
 ) -> RemeshTask:
     """What an object's settings ask of its mesh as it is now; a limit that is not given is the settings'.
+
+    Without `for_result`, the mesh is read as the viewport shows it, and nothing that a result would take along.
 
     Raises
     ------
@@ -135,7 +138,9 @@ def prepare_task(
         memory_limit=settings.memory_limit or None if memory_limit is None else memory_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
-    source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=kinds.asked_by(settings))
+    source = read_source(
+        obj, depsgraph, along_axes=bool(options.symmetry), kinds=kinds.asked_by(settings) if for_result else None
+    )
     return RemeshTask(
         source,
         options,

@@ -13,7 +13,7 @@ import numpy as np
 from ..core import report
 from ..core.errors import InternalError
 from ..core.remesh import CORNER, RemeshResult
-from . import edge_marks
+from . import edge_marks, result_features
 from .remesh_task import RemeshTask
 from .transfer import layers as transfer_layers
 from .transfer import object_data
@@ -110,8 +110,10 @@ def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> N
         mesh.use_auto_smooth = bool(source.layers.faces.is_smooth.any())
         mesh.auto_smooth_angle = math.pi
     transfer_layers.write(holder, task, result)
+    corners = np.flatnonzero(result.vertex_kinds == CORNER)
+    result_features.write(mesh, result.feature_edges, corners)
     if task.options.fit_limit_surface:
-        edge_marks.crease(mesh, result.feature_edges, np.flatnonzero(result.vertex_kinds == CORNER))
+        edge_marks.crease(mesh, result.feature_edges, corners)
     if mesh.validate(clean_customdata=False):
         raise InternalError("Blender found the resulting mesh invalid", "validation")
     mesh.update()
@@ -125,6 +127,7 @@ def _add_object(
     result.name = f"{source.name} Quads"
     result.data = mesh
     mesh.name = result.name
+    result.hybrid_quad.source_name = source.name
     for collection in object_data.collections_for(context, source, layers):
         collection.objects.link(result)
     object_data.take_along(context, result, layers)

@@ -41,13 +41,13 @@ class SourceTrack:
 
     def __init__(self, obj: bpy.types.Object) -> None:
         self.name: str = obj.name
-        self._identity = _identity(obj)
+        self._identity = identity(obj)
         self._mesh_name: str = obj.data.name
         self._state = _state(obj)
 
     def find(self) -> bpy.types.Object | None:
         """The object, even if it was renamed; None where it is in no scene any more."""
-        found = next((obj for obj in bpy.data.objects if _identity(obj) == self._identity), None)
+        found = next((obj for obj in bpy.data.objects if identity(obj) == self._identity), None)
         if not hasattr(bpy.types.ID, "session_uid") and (found is None or not self._has_a_name_of(found)):
             # Before Blender 4.2 only the place in memory tells objects apart. Undo moves them, but keeps their names.
             found = bpy.data.objects.get(self.name)
@@ -63,7 +63,8 @@ class SourceTrack:
         return obj.name == self.name or (obj.type == "MESH" and obj.data.name == self._mesh_name)
 
 
-def _identity(obj: bpy.types.Object) -> int:
+def identity(obj: bpy.types.Object) -> int:
+    """What tells an object from all others while the file is open; before Blender 4.2 undo may change it."""
     return int(obj.session_uid) if hasattr(obj, "session_uid") else int(obj.as_pointer())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Any, ClassVar
 
 from ..core.curve_counts import CurveCount
 from ..core.errors import InternalError
@@ -13,7 +14,7 @@ from ..core.options import RemeshOptions
 from ..core.remesh import CancelCallback, ProgressCallback, RemeshResult, remesh_with_options, usual_length
 from ..core.strokes import Stroke, guides_from_strokes, stronger_of
 from ..core.validation import violations
-from .bundle import load_bundle, save_bundle
+from .bundle import Arrays, save_bundle
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -51,6 +52,14 @@ class RemeshRequest:
     strokes: tuple[Stroke, ...] = ()
     stroke_radius: float = 2.0
     density: FloatArray | None = None
+
+    kind: ClassVar[str] = "remesh"
+    result_type: ClassVar[type[RemeshResult]] = RemeshResult
+
+    @property
+    def time_limit(self) -> float | None:
+        """Seconds after which the run stops."""
+        return self.options.time_limit
 
     def directions(self) -> FloatArray | None:
         """(n, 3) or (#F, 3) directions, given and drawn; None where there are none. Takes its time."""
@@ -91,7 +100,12 @@ class RemeshRequest:
         return result
 
     def save(self, path: Path) -> None:
-        """Writes the request to a file for :func:`load_request`."""
+        """Writes the request to a file for :func:`.kinds.load_request`."""
+        arrays, values = self.as_bundle()
+        save_bundle(path, arrays, {"kind": self.kind, **values})
+
+    def as_bundle(self) -> tuple[Arrays, dict[str, Any]]:
+        """All of it as arrays and values for JSON; :meth:`of_bundle` is the way back."""
         arrays = {
             "vertices": self.vertices,
             "face_sizes": self.polygons.sizes,
@@ -108,27 +122,26 @@ class RemeshRequest:
             "strokes": [[stroke.strength, stroke.kind] for stroke in self.strokes],
             "stroke_radius": self.stroke_radius,
         }
-        save_bundle(path, {name: array for name, array in arrays.items() if array is not None}, values)
+        return {name: array for name, array in arrays.items() if array is not None}, values
 
-
-def load_request(path: Path) -> RemeshRequest:
-    """A request that :meth:`RemeshRequest.save` wrote, with the same bits."""
-    arrays, values = load_bundle(path)
-    options = values["options"]
-    if isinstance(options["symmetry_center"], list):
-        options["symmetry_center"] = tuple(options["symmetry_center"])
-    return RemeshRequest(
-        vertices=arrays["vertices"],
-        polygons=Polygons(arrays["face_sizes"], arrays["face_vertices"]),
-        options=RemeshOptions(**options),
-        sharp_edges=arrays["sharp_edges"],
-        curve_counts=[(path, count) for path, count in values["curve_counts"]],
-        guides=arrays.get("guides"),
-        guides_of_faces=values["guides_of_faces"],
-        strokes=tuple(
-            Stroke(arrays[f"stroke_{index}"], strength, kind)
-            for index, (strength, kind) in enumerate(values["strokes"])
-        ),
-        stroke_radius=values["stroke_radius"],
-        density=arrays.get("density"),
-    )
+    @classmethod
+    def of_bundle(cls, arrays: Arrays, values: dict[str, Any]) -> RemeshRequest:
+        """The request that :meth:`as_bundle` described, with the same bits."""
+        options = values["options"]
+        if isinstance(options["symmetry_center"], list):
+            options["symmetry_center"] = tuple(options["symmetry_center"])
+        return cls(
+            vertices=arrays["vertices"],
+            polygons=Polygons(arrays["face_sizes"], arrays["face_vertices"]),
+            options=RemeshOptions(**options),
+            sharp_edges=arrays["sharp_edges"],
+            curve_counts=[(path, count) for path, count in values["curve_counts"]],
+            guides=arrays.get("guides"),
+            guides_of_faces=values["guides_of_faces"],
+            strokes=tuple(
+                Stroke(arrays[f"stroke_{index}"], strength, kind)
+                for index, (strength, kind) in enumerate(values["strokes"])
+            ),
+            stroke_radius=values["stroke_radius"],
+            density=arrays.get("density"),
+        )

@@ -51,19 +51,32 @@ bool has_inner_features(const ComponentPlan& plan) {
   return false;
 }
 
+struct Extractable {
+  ComponentPlan plan;
+  bool are_few = false;   ///< quads to be taken out afterwards
+  bool is_rough = false;  ///< it is a plan for more quads than there are to be
+};
+
+/// Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
+/// edges stay: fewer are to be asked for from the start.
+Extractable extractable_plan(const ComponentPlan& planned, double count) {
+  constexpr double kExtractable = 0.5;
+  const double least = kExtractable * quads_for_topology(planned.mesh);
+  Extractable out{planned, false, false};
+  out.are_few = planned.guides.empty() && count < least && planned.quads < least;
+  out.is_rough = out.are_few && !has_inner_features(planned);
+  if (out.is_rough) scale_plan(out.plan, least / planned.quads);
+  return out;
+}
+
 /// Passes until one has no flawed quads; the best of them.
 ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
                                  StageClock& clock, const RunContext& context) {
-  // Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
-  // edges stay: fewer are to be asked for from the start.
-  constexpr double kExtractable = 0.5;
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
-  const double least = kExtractable * quads_for_topology(planned.mesh);
-  const bool are_few = planned.guides.empty() && count < least && planned.quads < least;
-  const bool is_rough = are_few && !has_inner_features(planned);
-  ComponentPlan plan = planned;
-  if (is_rough) scale_plan(plan, least / planned.quads);
+  const Extractable extractable = extractable_plan(planned, count);
+  const bool are_few = extractable.are_few, is_rough = extractable.is_rough;
+  const ComponentPlan& plan = extractable.plan;
   ComponentResult best;
   std::string broken;
   bool any = false;
@@ -111,6 +124,15 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
 }
 
 }  // namespace
+
+ComponentPreview preview_component(const ComponentPlan& planned, double wanted, bool with_quads, const SurfaceIndex& whole,
+                                   const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
+                                   StageClock& clock, const RunContext& context) {
+  const Extractable extractable = extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh)));
+  PassSettings settings;
+  settings.is_rough = extractable.is_rough;
+  return preview_pass(extractable.plan, with_quads, whole, wishes, guides, options, settings, clock, context);
+}
 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
