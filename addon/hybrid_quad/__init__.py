@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .core.mesh_objects import mesh_arrays
     from .core.options import RemeshOptions
     from .core.remesh import RemeshResult, remesh
+    from .core.remesh_part import PartRemesh, remesh_part
     from .core.strokes import Stroke, guides_from_strokes
 
 bl_info = {
@@ -34,6 +35,7 @@ __all__ = [
     "Defect",
     "InputError",
     "InternalError",
+    "PartRemesh",
     "RemeshOptions",
     "RemeshResult",
     "Stroke",
@@ -41,6 +43,7 @@ __all__ = [
     "guides_from_strokes",
     "mesh_arrays",
     "remesh",
+    "remesh_part",
 ]
 
 # Names that need numpy or the compiled module are loaded on first use, so that Blender can register the add-on, and
@@ -52,6 +55,8 @@ _MODULE_OF = {
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "PartRemesh": "remesh_part",
+    "remesh_part": "remesh_part",
     "Stroke": "strokes",
     "guides_from_strokes": "strokes",
 }

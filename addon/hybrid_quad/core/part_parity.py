@@ -7,6 +7,7 @@ even. Two odd borders of one piece become an even one by a cut from one to the o
 from __future__ import annotations
 
 import heapq
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -87,7 +88,8 @@ def _odd_pieces(sheet: PartSheet) -> list[int]:
     owner = np.repeat(sheet.components, sheet.polygons.sizes)
     count = np.bincount(owner[sheet.kinds == SHARED], minlength=len(sheet.faces))
     is_free = np.bincount(owner[sheet.kinds == FREE], minlength=len(sheet.faces)) > 0
-    return np.flatnonzero((count % 2 == 1) & ~is_free).tolist()
+    pieces: list[int] = np.flatnonzero((count % 2 == 1) & ~is_free).tolist()
+    return pieces
 
 
 def _odd_error(sheet: PartSheet, piece: int, odd_border: str) -> InputError:
@@ -126,7 +128,9 @@ def _odd_faces(
     return {of_piece: candidate for of_piece, (_, candidate) in best.items()}
 
 
-def _cut(points: FloatArray, polygons: Polygons, part: BoolArray, sheet: PartSheet) -> tuple[PartSheet, tuple[Cut, ...]]:
+def _cut(
+    points: FloatArray, polygons: Polygons, part: BoolArray, sheet: PartSheet
+) -> tuple[PartSheet, tuple[Cut, ...]]:
     """The sheet, cut from each odd border to another odd one of its piece, or to one that is partly free."""
     paths: list[tuple[Indices, Indices]] = []  # sides along both banks
     while True:
@@ -154,7 +158,9 @@ def _cut(points: FloatArray, polygons: Polygons, part: BoolArray, sheet: PartShe
                 edges.reshape(-1).tolist(),
             )
         paths.append(path)
-        sheet = sheet_of(polygons, len(points), part, np.concatenate([bank for both in paths for bank in both]).tolist())
+        sheet = sheet_of(
+            polygons, len(points), part, np.concatenate([bank for both in paths for bank in both]).tolist()
+        )
 
 
 def _is_odd(sheet: PartSheet, loop: Indices) -> bool:
@@ -189,7 +195,7 @@ def _shortest_path(
             while path[-1] in before:
                 path.append(before[path[-1]])
             path.reverse()
-            pairs = list(zip(path[:-1], path[1:], strict=True))
+            pairs = list(itertools.pairwise(path))
             there = np.array([side_between[pair] for pair in pairs], np.int64)
             back = np.array([side_between[b, a] for a, b in reversed(pairs)], np.int64)
             return there, back

@@ -52,7 +52,8 @@ class PartSheet:
     @property
     def shared(self) -> Indices:
         """(k, 2) sides beside the rest, as the part's faces run through them."""
-        return self.sides[self.kinds == SHARED]
+        shared: Indices = self.sides[self.kinds == SHARED]
+        return shared
 
     def loops(self) -> list[Indices]:
         """The sides (corners) around each border, cuts among them, in order."""
@@ -141,7 +142,8 @@ def _require_manifold(polygons: Polygons, vertex_count: int, part: BoolArray) ->
     if bad.any():
         raise InputError(
             "non_manifold_part",
-            f"{int(bad.sum())} edges have more than two faces, of which several are chosen and others not: it is not clear where the part ends.",
+            f"{int(bad.sum())} edges have more than two faces, of which several are chosen and others not: it is not clear where "
+            "the part ends.",
             "edge",
             _vertex_pairs(edges[bad], vertex_count),
         )

@@ -75,7 +75,8 @@ def rim_of(quads: IntArray) -> Indices:
     sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2).astype(np.int64)
     keys = edge_keys(sides, int(quads.max()) + 1)  # type: ignore[arg-type]
     _, edge, uses = np.unique(keys, return_inverse=True, return_counts=True)
-    return sides[uses[edge.reshape(-1)] == 1]
+    rim: Indices = sides[uses[edge.reshape(-1)] == 1]
+    return rim
 
 
 def _ends(cut: Cut) -> list[int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +12,14 @@ import numpy.typing as npt
 from .curve_counts import CurveCount, as_curve_counts
 from .edge_borders import BoolArray, edge_keys
 from .errors import InputError
-from .guide_values import guides_of_vertices
 from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_edges, as_polygons, as_vertices, require_edges
 from .options import RemeshOptions
 from .part_parity import ODD_BORDERS, EvenPart, even_part
-from .part_sheet import INNER, Indices, border_length, sides_of
+from .part_sheet import Indices, border_length, sheet_of, sides_of
 from .part_weld import PartResult, rim_of, welded
-from .remesh import CancelCallback, ProgressCallback, remesh_with_options, usual_length
+from .part_wishes import PartWishes
+from .remesh import CancelCallback, ProgressCallback, remesh_with_options
 from .strokes import Stroke
-from .surface_points import fan_triangles, nearest_on_surface
 from .validation import violations
 
 _NUDGE = 1e-9  # of the diagonal: how far the banks of a cut are apart, so that nobody takes them for a crack to close
@@ -52,6 +51,30 @@ class PartRemesh:
     kept_faces: Indices
     quads: IntArray
     report: dict[str, Any]
+
+
+class PartChoice(NamedTuple):
+    """Which faces are remeshed.
+
+    Attributes
+    ----------
+    faces : (#F,) bool
+    odd_border : {"refuse", "grow", "shrink"}
+        See :func:`remesh_part`.
+    uses_border_length : bool
+        Whether the mean length of the edges between part and rest is the quads', whatever the options say.
+    """
+
+    faces: BoolArray
+    odd_border: str = "refuse"
+    uses_border_length: bool = False
+
+    def options_for(self, points: FloatArray, polygons: Polygons, options: RemeshOptions) -> RemeshOptions:
+        """`options` with the size of this part's quads."""
+        if not self.uses_border_length:
+            return options
+        length = border_length(points, sheet_of(polygons, len(points), self.faces))
+        return dataclasses.replace(options, edge_length=length, chord_error=None)
 
 
 def remesh_part(
@@ -108,13 +131,17 @@ def remesh_part(
         As :func:`hybrid_quad.remesh`.
     """
     points, polygons = as_vertices(vertices), as_polygons(faces)
-    asked = RemeshOptions(**options, **({} if quads is None else {"quads": quads}), edge_length=edge_length)
+    if quads is not None:
+        options["quads"] = quads
+    asked = RemeshOptions(**options, edge_length=edge_length)
+    is_free = quads is None and edge_length is None and asked.chord_error is None
+    choice = PartChoice(as_part(part, len(polygons.sizes)), odd_border, is_free)
+    _require_indices(points, polygons)
     result = remesh_part_with_options(
         points,
         polygons,
-        part,
-        asked,
-        uses_border_length=quads is None and edge_length is None and asked.chord_error is None,
+        choice.faces,
+        choice.options_for(points, polygons, asked),
         odd_border=odd_border,
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,
@@ -133,7 +160,6 @@ def remesh_part_with_options(
     part: npt.ArrayLike,
     options: RemeshOptions,
     *,
-    uses_border_length: bool = False,
     odd_border: str = "refuse",
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
     curve_counts: Iterable[CurveCount] | None = None,
@@ -143,28 +169,21 @@ def remesh_part_with_options(
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
 ) -> PartResult:
-    """:func:`remesh_part` with the settings in one value, and the quads alone; :func:`joined` puts them into the mesh.
-
-    Parameters
-    ----------
-    uses_border_length : bool
-        Whether the mean length of the edges between part and rest is the quads', whatever `options` say.
-    """
+    """:func:`remesh_part` with the settings in one value, and the quads alone; :func:`joined` puts them into the mesh."""
     if options.symmetry or options.fit_limit_surface:
-        raise ValueError("symmetry and fit_limit_surface need the whole surface: switch them off to remesh a part of it")
+        raise ValueError(
+            "symmetry and fit_limit_surface need the whole surface: switch them off to remesh a part of it"
+        )
     if odd_border not in ODD_BORDERS:
         raise ValueError(f"odd_border must be one of {', '.join(ODD_BORDERS)}, not {odd_border!r}")
     chosen = as_part(part, len(polygons.sizes))
     _require_indices(points, polygons)
     even = even_part(points, polygons, chosen, odd_border)
     _require_welded(points, even)
-    length = border_length(points, even.sheet)
-    if uses_border_length:
-        options = dataclasses.replace(options, edge_length=length)
     sheet_points = _nudged(points, even)
     marked = as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
-    own = _OfSheet(even, points, polygons)
+    own = PartWishes(even, points, polygons)
     own_counts = own.curve_counts(as_curve_counts(curve_counts))
     own_strokes, crossing = own.strokes(strokes)
     borders = [([int(a), int(b)], 1) for a, b in even.sheet.shared]
@@ -183,7 +202,7 @@ def remesh_part_with_options(
         )
     except InputError as error:
         raise own.error_of_whole(error) from error
-    own.complete_report(result.report, len(own_counts), crossing)
+    own.complete_report(result.report, len(own_counts), crossing, int(chosen.sum()))
     found = welded(result, points, even, sheet_points)
     _require_sound(found, points, polygons)
     return found
@@ -200,7 +219,9 @@ def as_part(part: npt.ArrayLike, face_count: int) -> BoolArray:
         raise TypeError(f"part must be Booleans or face numbers, not {array.dtype}")
     outside = (array < 0) | (array >= face_count)
     if outside.any():
-        raise InputError("unknown_face", f"{int(outside.sum())} of the chosen faces do not exist.", "face", array[outside])
+        raise InputError(
+            "unknown_face", f"{int(outside.sum())} of the chosen faces do not exist.", "face", array[outside].tolist()
+        )
     chosen = np.zeros(face_count, np.bool_)
     chosen[array.astype(np.int64)] = True
     return chosen
@@ -231,115 +252,6 @@ def joined(points: FloatArray, polygons: Polygons, result: PartResult) -> PartRe
         quads=quads,
         report=result.report,
     )
-
-
-class _OfSheet:
-    """What is asked of the whole mesh, for the sheet of a part."""
-
-    def __init__(self, even: EvenPart, points: FloatArray, polygons: Polygons) -> None:
-        self._sheet, self._cuts = even.sheet, even.cuts
-        self._points, self._polygons, self._part = points, polygons, even.part
-        sides = even.sheet.sides
-        keys = edge_keys(even.sheet.origin[sides], len(points))  # type: ignore[arg-type]
-        self._is_inner = even.sheet.kinds == INNER
-        self._edge_of = {int(key): (int(a), int(b)) for key, (a, b) in zip(keys, sides, strict=True)}
-        self._inner = set(keys[self._is_inner].tolist())
-
-    def edges(self, edges: IntArray) -> IntArray:
-        """Those of some edges that are inside the part."""
-        keys = edge_keys(edges, len(self._points)).tolist() if len(edges) else []
-        return as_edges([self._edge_of[key] for key in keys if key in self._inner])
-
-    def curve_counts(self, counts: list[tuple[list[int], int]]) -> list[tuple[list[int], int]]:
-        """Those of some paths all of whose edges are inside the part."""
-        found = []
-        for path, count in counts:
-            pairs = np.stack([path[:-1], path[1:]], axis=1).astype(np.int64)
-            keys = edge_keys(pairs, len(self._points)).tolist()  # type: ignore[arg-type]
-            if not keys or any(key not in self._inner for key in keys):
-                continue
-            edges = [self._edge_of[key] for key in keys]
-            own = [edge[0] if self._sheet.origin[edge[0]] == v else edge[1] for edge, v in zip(edges, path[:-1], strict=True)]
-            own.append(edges[-1][0] if self._sheet.origin[edges[-1][0]] == path[-1] else edges[-1][1])
-            found.append((own, count))
-        return found
-
-    def cut_counts(self, sheet_points: FloatArray, options: RemeshOptions) -> list[tuple[list[int], int]]:
-        """Both banks of every cut, with one number of quads."""
-        edge_length = usual_length(sheet_points, self._sheet.polygons, options)
-        counts = []
-        for cut in self._cuts:
-            along = sheet_points[list(cut.forward)]
-            length = float(np.linalg.norm(np.diff(along, axis=0), axis=1).sum())
-            count = max(1, round(length / edge_length))
-            counts += [(list(cut.forward), count), (list(cut.backward), count)]
-        return counts
-
-    def values(self, values: npt.ArrayLike | None) -> FloatArray | None:
-        """(s, ...) values of vertices, or directions of faces, for the sheet's vertices."""
-        if values is None:
-            return None
-        array = np.asarray(values, np.float64)
-        if len(array) == len(self._part) != len(self._points) and array.shape[1:] == (3,):
-            array = guides_of_vertices(array, self._polygons, len(self._points))
-        if len(array) != len(self._points):
-            raise ValueError(f"values must be one for each of {len(self._points)} vertices, not of shape {array.shape}")
-        return array[self._sheet.origin]
-
-    def strokes(self, strokes: Iterable[Stroke]) -> tuple[list[Stroke], int]:
-        """Directions, and the loops and rings that lie in the part; how many are partly in it, and left out."""
-        inside, crossing = [], 0
-        triangles = fan_triangles(self._polygons)
-        owner = np.repeat(np.arange(len(self._polygons.sizes)), np.maximum(self._polygons.sizes - 2, 0))
-        for stroke in strokes:
-            if stroke.kind == "direction":
-                inside.append(stroke)
-                continue
-            nearest = nearest_on_surface(stroke.points, self._points, triangles).triangles
-            is_in = self._part[owner[nearest]]
-            if is_in.all():
-                inside.append(stroke)
-            elif is_in.any():
-                crossing += 1
-        return inside, crossing
-
-    def complete_report(self, report: dict[str, Any], asked_counts: int, crossing: int) -> None:
-        """Names elements of the whole mesh, and leaves out the counts that only the border asked for."""
-        report["curve_counts"] = report["curve_counts"][:asked_counts]
-        own = [w for w in report["warnings"] if not _is_of_border(w, asked_counts)]
-        report["warnings"] = own
-        if crossing:
-            own.append(f"{crossing} loops and rings cross the border of the part, and are left out")
-        for defect in report["defects"]:
-            defect["elements"] = self._of_whole(defect["element_kind"], defect["elements"])
-        report["part"] = {
-            "faces": len(self._sheet.faces),
-            "border_edges": len(self._sheet.shared),
-            "cuts": len(self._cuts),
-        }
-
-    def error_of_whole(self, error: InputError) -> InputError:
-        """An error of the sheet's run, with the elements of the whole mesh."""
-        elements = list(error.elements)
-        if error.element_kind == "edge":
-            pairs = [list(pair) for pair in zip(elements[0::2], elements[1::2], strict=True)]
-            elements = [v for pair in self._of_whole("edge", pairs) for v in pair]
-        else:
-            elements = self._of_whole(error.element_kind, elements)
-        return InputError(error.code, str(error), error.element_kind, elements)
-
-    def _of_whole(self, kind: str, elements: list[Any]) -> list[Any]:
-        table = {"vertex": self._sheet.origin, "edge": self._sheet.origin, "face": self._sheet.faces}.get(kind)
-        if table is None or not elements:
-            return elements
-        whole: list[Any] = table[np.array(elements, np.int64)].tolist()
-        return whole
-
-
-def _is_of_border(warning: str, asked_counts: int) -> bool:
-    """Whether a warning is of a number that the caller did not ask for; a missed one is an error later on."""
-    head, name, rest = warning.partition("Curve ")
-    return bool(name) and "of curve_counts" in rest and int(rest.split(" ", 1)[0]) >= asked_counts
 
 
 def _nudged(points: FloatArray, even: EvenPart) -> FloatArray:

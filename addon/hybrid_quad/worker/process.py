@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from ..core.errors import Cancelled
+from ..core.part_weld import PartResult
 from ..core.remesh import RemeshResult
 from .bundle import load_fields
 from .death import WorkerDied
@@ -180,7 +181,8 @@ class WorkerRun:
             self._end(error)
             return
         try:
-            self._result = RemeshResult(**load_fields(self._folder / RESULT))
+            fields = load_fields(self._folder / RESULT)
+            self._result = (PartResult if "whole_vertices" in fields else RemeshResult)(**fields)
         except Exception as error:  # for example a disk that is full
             self._end(error)
         else:

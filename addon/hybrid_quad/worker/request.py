@@ -11,6 +11,7 @@ from ..core.guide_values import guides_of_vertices
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.options import RemeshOptions
 from ..core.remesh import CancelCallback, ProgressCallback, RemeshResult, remesh_with_options, usual_length
+from ..core.remesh_part import PartChoice, remesh_part_with_options
 from ..core.strokes import Stroke, guides_from_strokes, stronger_of
 from ..core.validation import violations
 from .bundle import load_bundle, save_bundle
@@ -39,6 +40,8 @@ class RemeshRequest:
         How far strokes of kind ``"direction"`` act, in edge lengths of the quads.
     density : (n,) float64 or None
         2 for edges half as long.
+    part : PartChoice or None
+        The faces to remesh, where that is not all.
     """
 
     vertices: FloatArray
@@ -51,6 +54,7 @@ class RemeshRequest:
     strokes: tuple[Stroke, ...] = ()
     stroke_radius: float = 2.0
     density: FloatArray | None = None
+    part: PartChoice | None = None
 
     def directions(self) -> FloatArray | None:
         """(n, 3) or (#F, 3) directions, given and drawn; None where there are none. Takes its time."""
@@ -73,6 +77,8 @@ class RemeshRequest:
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does; ``InternalError`` also where the result is no valid quad mesh.
         """
+        if self.part is not None:
+            return self._solve_part(self.part, progress, cancel)
         result = remesh_with_options(
             self.vertices,
             self.polygons,
@@ -90,6 +96,25 @@ class RemeshRequest:
             raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
         return result
 
+    def _solve_part(
+        self, part: PartChoice, progress: ProgressCallback | None, cancel: CancelCallback | None
+    ) -> RemeshResult:
+        asked = part.options_for(self.vertices, self.polygons, self.options)
+        return remesh_part_with_options(
+            self.vertices,
+            self.polygons,
+            part.faces,
+            asked,
+            odd_border=part.odd_border,
+            sharp_edges=self.sharp_edges,
+            curve_counts=self.curve_counts,
+            guides=dataclasses.replace(self, options=asked).directions(),
+            strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
+            density=self.density,
+            progress=progress,
+            cancel=cancel,
+        )
+
     def save(self, path: Path) -> None:
         """Writes the request to a file for :func:`load_request`."""
         arrays = {
@@ -99,6 +124,7 @@ class RemeshRequest:
             "sharp_edges": self.sharp_edges,
             "guides": self.guides,
             "density": self.density,
+            "part": None if self.part is None else self.part.faces,
             **{f"stroke_{index}": stroke.points for index, stroke in enumerate(self.strokes)},
         }
         values = {
@@ -107,6 +133,7 @@ class RemeshRequest:
             "guides_of_faces": self.guides_of_faces,
             "strokes": [[stroke.strength, stroke.kind] for stroke in self.strokes],
             "stroke_radius": self.stroke_radius,
+            "part": None if self.part is None else [self.part.odd_border, self.part.uses_border_length],
         }
         save_bundle(path, {name: array for name, array in arrays.items() if array is not None}, values)
 
@@ -131,4 +158,5 @@ def load_request(path: Path) -> RemeshRequest:
         ),
         stroke_radius=values["stroke_radius"],
         density=arrays.get("density"),
+        part=None if values["part"] is None else PartChoice(arrays["part"], *values["part"]),
     )
