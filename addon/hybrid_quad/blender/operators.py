@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Collection
 from typing import Any
 
 import bpy
@@ -15,6 +16,7 @@ from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
 from .background_run import BackgroundRun
+from .edit_mode import out_of_edit_mode
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay
@@ -50,7 +52,12 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
         if not native.is_there():
             cls.poll_message_set("The compiled part is missing: install a release of the add-on")
             return False
-        return super().poll(context)
+        obj = context.object
+        is_part = obj is not None and obj.type == "MESH" and obj.hybrid_quad.part.region != "WHOLE"
+        problem = problem_of(context, ("OBJECT", "EDIT") if is_part else ("OBJECT",))
+        if problem:
+            cls.poll_message_set(problem)
+        return not problem
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The whole run at once: for scripts and Blender without a window."""
@@ -86,7 +93,7 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if not self._run.worker.poll() or (self._run.has_result and context.mode != "OBJECT"):
+        if not self._run.worker.poll() or (self._run.has_result and not self._run.can_be_placed(context)):
             self._display.update(context)
             return {"PASS_THROUGH"}
         background_run.forget()
@@ -107,6 +114,9 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
 
     def _placement(self, context: bpy.types.Context, obj: bpy.types.Object) -> Placement:
         """Where the result goes, with regard to what the user did meanwhile."""
+        if self._run.task.part is not None:
+            self._run.require_same_mesh(obj)
+            return Placement(self._run.in_place, takes_selection=context.view_layer.objects.active == obj)
         is_changed = obj.mode != "OBJECT" or self._run.source.has_changed(obj)
         if is_changed:
             self.report(
@@ -128,7 +138,8 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
         result: RemeshResult,
         placement: Placement,
     ) -> set[str]:
-        target = place_result(context, obj, task, result, placement)
+        with out_of_edit_mode(obj):
+            target = place_result(context, obj, task, result, placement)
         for defect in result.report["defects"]:
             self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
         for warning in result.report["warnings"]:
@@ -197,12 +208,12 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
     self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname)
 
 
-def problem_of(context: bpy.types.Context) -> str:
-    """Why the active object cannot be worked on now; empty where it can."""
+def problem_of(context: bpy.types.Context, modes: Collection[str] = ("OBJECT",)) -> str:
+    """Why the active object cannot be worked on now; empty where it can, if it is in one of some modes."""
     obj = context.object
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first"
-    if obj.mode != "OBJECT":
+    if obj.mode not in modes:
         return "Switch to Object Mode first"
     if obj.library is not None:
         return "This object is linked from another file; make it local first"

@@ -22,7 +22,9 @@ from .result_mesh import read_report
 from .transfer.kinds import KINDS
 
 
-class _HybridQuadPanel:
+class HybridQuadPanel:
+    """In the tab, for mesh objects."""
+
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Hybrid Quad"
@@ -32,7 +34,7 @@ class _HybridQuadPanel:
         return context.object is not None and context.object.type == "MESH"
 
 
-class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
     """Size of the quads, where they go, and the button."""
 
     bl_label = "Hybrid Quad"
@@ -64,7 +66,7 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
         button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
 
 
-class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_features(HybridQuadPanel, bpy.types.Panel):
     """Which edges stay edges."""
 
     bl_label = "Edges to Keep"
@@ -83,7 +85,7 @@ class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
         layout.column(heading="Marked").prop(settings, "use_marked_sharp", text="Sharp")
 
 
-class VIEW3D_PT_hybrid_quad_feature_sources(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_feature_sources(HybridQuadPanel, bpy.types.Panel):
     """Other marks, and borders, that make edges stay."""
 
     bl_label = "Features"
@@ -103,7 +105,7 @@ class VIEW3D_PT_hybrid_quad_feature_sources(_HybridQuadPanel, bpy.types.Panel):
                 column.prop(settings, source.setting, text=source.label)
 
 
-class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_guides(HybridQuadPanel, bpy.types.Panel):
     """What gives the quads their direction and density."""
 
     bl_label = "Guides"
@@ -141,7 +143,7 @@ class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
         layout.prop(settings, "guide_radius")
 
 
-class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
     """How quads adapt to the surface."""
 
     bl_label = "Flow"
@@ -163,7 +165,7 @@ class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "fit_limit_surface")
 
 
-class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_symmetry(HybridQuadPanel, bpy.types.Panel):
     """Mirror planes."""
 
     bl_label = "Symmetry"
@@ -182,7 +184,7 @@ class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
         row.prop(settings, "use_auto_symmetry", toggle=True)
 
 
-class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_transfer(HybridQuadPanel, bpy.types.Panel):
     """What the result takes along."""
 
     bl_label = "Transfer"
@@ -202,7 +204,7 @@ class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
         columns["Object"].active = settings.result_mode == "NEW"
 
 
-class VIEW3D_PT_hybrid_quad_limits(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_limits(HybridQuadPanel, bpy.types.Panel):
     """When a run is ended."""
 
     bl_label = "Limits"
@@ -218,7 +220,7 @@ class VIEW3D_PT_hybrid_quad_limits(_HybridQuadPanel, bpy.types.Panel):
         column.prop(context.object.hybrid_quad, "memory_limit")
 
 
-class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
     """What is wrong with the mesh."""
 
     bl_label = "Check"
@@ -240,7 +242,7 @@ class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
                 line.operator(name, text="", icon=icon).code = row["code"]
 
 
-class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
     """What the latest run of the active object gave."""
 
     bl_label = "Last Result"

@@ -11,9 +11,9 @@ try:
 except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
-from . import background_run, check_operators, command, operators, panels, properties, run_display
+from . import background_run, check_operators, command, operators, panels, part_panel, properties, run_display
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES)
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES, *part_panel.CLASSES)
 
 
 def register() -> None:
