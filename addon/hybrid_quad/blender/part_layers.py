@@ -54,7 +54,7 @@ def copy_layers(holder: bpy.types.Object, part_mesh: bpy.types.Mesh, new: NewEle
         if values is not None and mesh.vertex_paint_masks:
             layers = mesh.vertex_paint_masks[0].data, part_mesh.vertex_paint_masks[0].data
             _overlay(*layers, "value", np.float32, 1, *_places(new, "vertices"))
-    if hasattr(mesh, "vertex_creases") and mesh.vertex_creases and part_mesh.vertex_creases:
+    if bpy.app.version < (4, 0) and mesh.vertex_creases and part_mesh.vertex_creases:
         layers = mesh.vertex_creases[0].data, part_mesh.vertex_creases[0].data
         _overlay(*layers, "value", np.float32, 1, *_places(new, "vertices"))
     _copy_groups(holder, part_mesh, new)
