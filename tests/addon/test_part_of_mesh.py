@@ -305,3 +305,36 @@ def test_scaled_and_mirrored_objects():
     assert_rest_kept(before, result.data, int((~chosen).sum()))
     assert_closed_to_rest(result.data, int((~chosen).sum()))
     assert min(polygon.normal.z for polygon in result.data.polygons) > 0.99
+
+
+def test_several_objects_by_their_own_settings():
+    one, other = add_cube(segments=8), add_grid()
+    chosen = choose(one, lambda center: center.z > 0.99)
+    other.hybrid_quad.quads = 60
+    one.hybrid_quad.result_mode = other.hybrid_quad.result_mode = "REPLACE"
+    empty = add_grid()
+    choose(empty, lambda _: False)
+    before = Rest(one.data, chosen)
+    for obj in (one, other, empty):
+        obj.select_set(True)
+    with pytest.raises(RuntimeError, match="No face of"):  # that of one object; the others are done
+        bpy.ops.object.hybrid_quad_remesh_selected()
+    assert_rest_kept(before, one.data, int((~chosen).sum()))
+    assert 40 < len(other.data.polygons) < 80
+    assert one.select_get() and other.select_get()
+
+
+def test_batch_command(tmp_path):
+    from hybrid_quad.blender.command import main
+
+    obj = add_grid()
+    chosen = choose(obj, middle)
+    set_face_attribute(obj, "Here", "BOOLEAN", chosen)
+    obj.hybrid_quad.part.region = "WHOLE"
+    before = Rest(obj.data, chosen)
+    out = str(tmp_path / "out.blend")
+    arguments = ["--object", obj.name, "--output", out, "--part", "attribute", "--part-attribute", "Here", "--replace"]
+    assert main([*arguments, "--quads", "80", "--quiet"]) == 0
+    assert 60 < len(obj.data.polygons) - int((~chosen).sum()) < 100
+    assert_rest_kept(before, obj.data, int((~chosen).sum()))
+    assert main([*arguments[:-2], "Elsewhere", "--quiet"]) == 1

@@ -11,9 +11,28 @@ try:
 except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
-from . import background_run, check_operators, command, operators, panels, part_panel, properties, run_display
+from . import (
+    background_run,
+    check_operators,
+    command,
+    operators,
+    panels,
+    part_panel,
+    properties,
+    run_display,
+    selected_objects,
+)
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES, *part_panel.CLASSES)
+CLASSES = (
+    *properties.CLASSES,
+    *operators.CLASSES,
+    *selected_objects.CLASSES,
+    *check_operators.CLASSES,
+    *panels.CLASSES,
+    *part_panel.CLASSES,
+)
+# Of the menu Object, in this order.
+MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
 
 
 def register() -> None:
@@ -25,7 +44,8 @@ def register() -> None:
         type=properties.HybridQuadSettings, name="Hybrid Quad", description="How this object is remeshed"
     )
     run_display.register()
-    bpy.types.VIEW3D_MT_object.append(operators.draw_menu_entry)
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.append(entry)
     command.register()
 
 
@@ -34,7 +54,8 @@ def unregister() -> None:
     background_run.forget()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
-    bpy.types.VIEW3D_MT_object.remove(operators.draw_menu_entry)
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.remove(entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
     run_display.unregister()

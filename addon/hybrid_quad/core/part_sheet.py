@@ -121,10 +121,10 @@ def _kinds_of_sides(polygons: Polygons, vertex_count: int, inside: BoolArray) ->
     keys = edge_keys(sides_of(polygons), vertex_count)  # type: ignore[arg-type]
     own, others = keys[inside], np.sort(keys[~inside])
     _, edge, uses = np.unique(own, return_inverse=True, return_counts=True)
-    uses = uses[edge.reshape(-1)]
+    is_single = uses[edge.reshape(-1)] == 1
     place = np.minimum(np.searchsorted(others, own), max(len(others) - 1, 0))
     is_shared = others[place] == own if len(others) else np.zeros(len(own), np.bool_)
-    kinds: Indices = np.where(uses == 1, np.where(is_shared, SHARED, FREE), np.where(uses == 2, INNER, FREE))
+    kinds: Indices = np.where(is_single, np.where(is_shared, SHARED, FREE), INNER)
     return kinds
 
 
@@ -136,14 +136,13 @@ def _require_manifold(polygons: Polygons, vertex_count: int, part: BoolArray) ->
     edge = edge.reshape(-1)
     uses = np.bincount(edge, minlength=len(edges))
     own = np.bincount(edge[inside], minlength=len(edges))
-    # One face of the part may meet several of the rest: for the part that is a border as any other. More than two of the
-    # part alone are cut apart, as in any mesh.
-    bad = (own > 1) & (uses > 2) & (uses > own)
+    # One face of the part may meet several of the rest: for the part that is a border as any other.
+    bad = (own > 1) & (uses > 2)
     if bad.any():
         raise InputError(
             "non_manifold_part",
-            f"{int(bad.sum())} edges have more than two faces, of which several are chosen and others not: it is not clear where "
-            "the part ends.",
+            f"{int(bad.sum())} edges of the chosen faces have more than two faces, so it is not clear how these go together. "
+            "Choose fewer faces there.",
             "edge",
             _vertex_pairs(edges[bad], vertex_count),
         )

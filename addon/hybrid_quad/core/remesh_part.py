@@ -18,8 +18,8 @@ from .part_parity import ODD_BORDERS, EvenPart, even_part
 from .part_sheet import Indices, border_length, sheet_of, sides_of
 from .part_weld import PartResult, rim_of, welded
 from .part_wishes import PartWishes
-from .remesh import CancelCallback, ProgressCallback, remesh_with_options
-from .strokes import Stroke
+from .remesh import CancelCallback, PathLike, ProgressCallback, remesh_with_options
+from .strokes import Stroke, checked_strokes
 from .validation import violations
 
 _NUDGE = 1e-9  # of the diagonal: how far the banks of a cut are apart, so that nobody takes them for a crack to close
@@ -88,8 +88,10 @@ def remesh_part(
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
     curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
-    strokes: Iterable[Stroke] = (),
+    strokes: Iterable[Stroke | npt.ArrayLike] | None = None,
+    stroke_radius: float | None = None,
     density: npt.ArrayLike | None = None,
+    frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
     **options: Any,
@@ -113,7 +115,7 @@ def remesh_part(
     odd_border : {"refuse", "grow", "shrink"}
         What is done where a connected part has an odd number of edges at its border, which quads cannot fill: refuse it, or remesh
         one face with an odd number of sides more or less.
-    sharp_edges, curve_counts, guides, strokes, density
+    sharp_edges, curve_counts, guides, strokes, stroke_radius, density, frames
         As of :func:`hybrid_quad.remesh`, for the whole mesh; what lies in the rest does nothing.
     **options
         Other settings of :class:`hybrid_quad.RemeshOptions`, but symmetry and fit_limit_surface.
@@ -140,14 +142,16 @@ def remesh_part(
     result = remesh_part_with_options(
         points,
         polygons,
-        choice.faces,
         choice.options_for(points, polygons, asked),
+        part=choice.faces,
         odd_border=odd_border,
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,
         guides=guides,
         strokes=strokes,
+        stroke_radius=stroke_radius,
         density=density,
+        frames=frames,
         progress=progress,
         cancel=cancel,
     )
@@ -157,17 +161,20 @@ def remesh_part(
 def remesh_part_with_options(
     points: FloatArray,
     polygons: Polygons,
-    part: npt.ArrayLike,
     options: RemeshOptions,
     *,
+    part: npt.ArrayLike,
     odd_border: str = "refuse",
     sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
     curve_counts: Iterable[CurveCount] | None = None,
     guides: npt.ArrayLike | None = None,
-    strokes: Iterable[Stroke] = (),
+    strokes: Iterable[Stroke | npt.ArrayLike] | None = None,
+    stroke_radius: float | None = None,
     density: npt.ArrayLike | None = None,
+    frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
+    dump_stages: PathLike | None = None,
 ) -> PartResult:
     """:func:`remesh_part` with the settings in one value, and the quads alone; :func:`joined` puts them into the mesh."""
     if options.symmetry or options.fit_limit_surface:
@@ -185,7 +192,7 @@ def remesh_part_with_options(
     require_edges(marked, polygons, len(points))
     own = PartWishes(even, points, polygons)
     own_counts = own.curve_counts(as_curve_counts(curve_counts))
-    own_strokes, crossing = own.strokes(strokes)
+    own_strokes, crossing = own.strokes(checked_strokes(strokes))
     borders = [([int(a), int(b)], 1) for a, b in even.sheet.shared]
     try:
         result = remesh_with_options(
@@ -196,9 +203,12 @@ def remesh_part_with_options(
             curve_counts=[*own_counts, *borders, *own.cut_counts(sheet_points, options)],
             guides=own.values(guides),
             strokes=own_strokes,
+            stroke_radius=stroke_radius,
             density=own.values(density),
+            frames=own.values(frames),
             progress=progress,
             cancel=cancel,
+            dump_stages=dump_stages,
         )
     except InputError as error:
         raise own.error_of_whole(error) from error

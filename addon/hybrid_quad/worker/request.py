@@ -103,8 +103,8 @@ class RemeshRequest:
         return remesh_part_with_options(
             self.vertices,
             self.polygons,
-            part.faces,
             asked,
+            part=part.faces,
             odd_border=part.odd_border,
             sharp_edges=self.sharp_edges,
             curve_counts=self.curve_counts,
