@@ -140,20 +140,19 @@ def _cut(
             return sheet, tuple(_banks(sheet, *path) for path in paths)
         first = odd.index(True)
         piece = sheet.component_of(int(loops[first][0]))
-        targets = [
-            loop
+        others = [
+            (loop, odd[index] or (sheet.kinds[loop] == FREE).any())
             for index, loop in enumerate(loops)
-            if index != first
-            and sheet.component_of(int(loop[0])) == piece
-            and (odd[index] or (sheet.kinds[loop] == FREE).any())
+            if index != first and sheet.component_of(int(loop[0])) == piece
         ]
-        path = _shortest_path(points, sheet, loops[first], np.concatenate(targets))
+        path = _shortest_path(points, sheet, loops[first], [loop for loop, is_end in others if is_end])
+        if path is None:  # even borders are in the way: one of them becomes part of this one
+            path = _shortest_path(points, sheet, loops[first], [loop for loop, _ in others])
         if path is None:
             edges = sheet.origin[sheet.sides[loops[first]]]
             raise InputError(
                 "no_way_between_borders",
-                f"A border of {len(loops[first])} edges needs a way along edges to another odd border of the chosen faces, and "
-                "all ways touch other borders. Choose other faces.",
+                f"A border of {len(edges)} edges needs a way along edges to another border of the chosen faces. Choose other faces.",
                 "edge",
                 edges.reshape(-1).tolist(),
             )
@@ -169,21 +168,26 @@ def _is_odd(sheet: PartSheet, loop: Indices) -> bool:
 
 
 def _shortest_path(
-    points: FloatArray, sheet: PartSheet, start: Indices, targets: Indices
+    points: FloatArray, sheet: PartSheet, start: Indices, targets: list[Indices]
 ) -> tuple[Indices, Indices] | None:
-    """Inner sides from one border to others that pass no border between: along the way, and back on the other side."""
+    """Inner sides from one border to others that pass no border between: along the way, and back on the other side.
+
+    They begin and end where a side is that was a border before all cuts: the banks of a cut are to stay in one piece.
+    """
+    if not targets:
+        return None
     sides = sheet.sides
     on_rim = np.zeros(len(sheet.origin), np.bool_)
     on_rim[sides[sheet.kinds != INNER]] = True
     is_target = np.zeros(len(sheet.origin), np.bool_)
-    is_target[sides[targets]] = True
+    is_target[sides[_ends_for_cuts(sheet, np.concatenate(targets))]] = True
     inner = np.flatnonzero(sheet.kinds == INNER)
     side_between = {(int(a), int(b)): int(side) for side, (a, b) in zip(inner, sides[inner], strict=True)}
     ways: dict[int, list[int]] = {}
     for a, b in side_between:
         ways.setdefault(a, []).append(b)
     place = points[sheet.origin]
-    distance = {int(vertex): 0.0 for vertex in sides[start, 0]}
+    distance = dict.fromkeys(sides[_ends_for_cuts(sheet, start)].ravel().tolist(), 0.0)
     before: dict[int, int] = {}
     queue = [(0.0, vertex) for vertex in sorted(distance)]
     while queue:
@@ -208,6 +212,11 @@ def _shortest_path(
                 before[other] = vertex
                 heapq.heappush(queue, (reached, other))
     return None
+
+
+def _ends_for_cuts(sheet: PartSheet, loop: Indices) -> Indices:
+    own: Indices = loop[sheet.kinds[loop] != CUT]
+    return own
 
 
 def _banks(sheet: PartSheet, there: Indices, back: Indices) -> Cut:

@@ -15,7 +15,7 @@ from .errors import InputError
 from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_edges, as_polygons, as_vertices, require_edges
 from .options import RemeshOptions
 from .part_parity import ODD_BORDERS, EvenPart, even_part
-from .part_sheet import Indices, border_length, sheet_of, sides_of
+from .part_sheet import FREE, Indices, border_length, sheet_of, sides_of
 from .part_weld import PartResult, rim_of, welded
 from .part_wishes import PartWishes
 from .remesh import CancelCallback, PathLike, ProgressCallback, remesh_with_options
@@ -186,7 +186,7 @@ def remesh_part_with_options(
     chosen = as_part(part, len(polygons.sizes))
     _require_indices(points, polygons)
     even = even_part(points, polygons, chosen, odd_border)
-    _require_welded(points, even)
+    _require_welded(points, polygons, even)
     sheet_points = _nudged(points, even)
     marked = as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
@@ -265,12 +265,18 @@ def joined(points: FloatArray, polygons: Polygons, result: PartResult) -> PartRe
 
 
 def _nudged(points: FloatArray, even: EvenPart) -> FloatArray:
-    """(s, 3) the sheet's vertices; those on one bank of each cut a little off."""
-    sheet_points = points[even.sheet.origin]
-    if even.cuts:
-        diagonal = float(np.linalg.norm(np.ptp(sheet_points, axis=0)))
-        for cut in even.cuts:
-            sheet_points[list(cut.backward)] += _NUDGE * diagonal
+    """(s, 3) the sheet's vertices; those along cuts a little off from all others of their places."""
+    origin = even.sheet.origin
+    sheet_points = points[origin]
+    if not even.cuts:
+        return sheet_points
+    along = np.unique(np.concatenate([origin[list(bank)] for cut in even.cuts for bank in cut]))
+    copies = np.flatnonzero(np.isin(origin, along))
+    copies = copies[np.argsort(origin[copies], kind="stable")]
+    _, first, count = np.unique(origin[copies], return_index=True, return_counts=True)
+    rank = np.arange(len(copies)) - np.repeat(first, count)
+    diagonal = float(np.linalg.norm(np.ptp(sheet_points, axis=0)))
+    sheet_points[copies] += (_NUDGE * diagonal * rank)[:, None]
     return sheet_points
 
 
@@ -281,13 +287,17 @@ def _require_indices(points: FloatArray, polygons: Polygons) -> None:
         raise InputError("index_out_of_range", "Faces have vertices that do not exist.", "face", faces.tolist())
 
 
-def _require_welded(points: FloatArray, even: EvenPart) -> None:
-    """Vertices that share the border's places would be merged with it."""
-    sheet = even.sheet
-    used = np.unique(sheet.origin)
-    _, place, count = np.unique(points[used], axis=0, return_inverse=True, return_counts=True)
-    doubled = used[count[place.reshape(-1)] > 1]
-    found = np.intersect1d(doubled, sheet.origin[sheet.shared])
+def _require_welded(points: FloatArray, polygons: Polygons, even: EvenPart) -> None:
+    """Vertices in one place would be merged: at the border that joins the rest, or across a crack beside the rest."""
+    sheet, of_rest = even.sheet, np.repeat(~even.part, polygons.sizes)
+    used = np.unique(polygons.vertices)
+    places = np.full(len(points), -1, np.int64)
+    places[used] = np.unique(points[used], axis=0, return_inverse=True)[1].reshape(-1)
+    is_doubled = (np.bincount(places[used]) > 1)[places] & (places >= 0)
+    rest = np.unique(polygons.vertices[of_rest])
+    shared = np.unique(sheet.origin[sheet.shared])
+    free = np.setdiff1d(sheet.origin[sheet.sides[sheet.kinds == FREE]], rest)
+    found = np.union1d(shared[is_doubled[shared]], free[np.isin(places[free], places[rest])])
     if len(found):
         raise InputError(
             "unwelded_border",
