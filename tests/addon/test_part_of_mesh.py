@@ -189,6 +189,9 @@ def test_in_edit_mode():
     assert bpy.ops.object.hybrid_quad_remesh() == {"FINISHED"}
     assert obj.mode == "EDIT"
     bpy.ops.object.mode_set(mode="OBJECT")
+    assert [polygon.select for polygon in obj.data.polygons] == [
+        index >= int((~chosen).sum()) for index in range(len(obj.data.polygons))
+    ]
     assert_rest_kept(before, obj.data, int((~chosen).sum()))
     assert boundary_count(obj.data) == 0
 
@@ -338,3 +341,55 @@ def test_batch_command(tmp_path):
     assert 60 < len(obj.data.polygons) - int((~chosen).sum()) < 100
     assert_rest_kept(before, obj.data, int((~chosen).sum()))
     assert main([*arguments[:-2], "Elsewhere", "--quiet"]) == 1
+
+
+def test_linked_meshes_are_copied_and_linked_objects_refused(tmp_path):
+    obj = add_grid()
+    chosen = choose(obj, middle)
+    faces = len(obj.data.polygons)
+    library = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(library, {obj})
+    with bpy.data.libraries.load(library, link=True) as (theirs, ours):
+        ours.objects, ours.meshes = list(theirs.objects), list(theirs.meshes)
+    linked, mesh = ours.objects[0], ours.meshes[0]
+    bpy.context.scene.collection.objects.link(linked)
+    activate(linked)
+    assert not bpy.ops.object.hybrid_quad_remesh.poll()
+    activate(obj)
+    obj.data = mesh
+    assert obj.data.library is not None
+    obj.hybrid_quad.result_mode = "REPLACE"
+    obj.hybrid_quad.part.use_border_length, obj.hybrid_quad.quads = False, 3 * int(chosen.sum())
+    remesh()
+    assert obj.data.library is None and len(obj.data.polygons) > faces == len(mesh.polygons)
+
+
+def test_in_edit_mode_of_a_shape_key():
+    obj = add_everything()
+    chosen = choose(obj, middle)
+    before = Rest(obj.data, chosen)
+    obj.active_shape_key_index = 1
+    obj.hybrid_quad.result_mode = "REPLACE"
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.object.hybrid_quad_remesh() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_rest_kept(before, obj.data, int((~chosen).sum()))
+    CHECKS["shape_keys"](add_everything(), obj)
+
+
+def test_loose_vertices_and_edges_stay():
+    obj = add_grid()
+    edited = bmesh.new()
+    edited.from_mesh(obj.data)
+    inside = min(edited.verts, key=lambda vertex: vertex.co.length)
+    ends = [edited.verts.new((0, 0, height)) for height in (1, 2)]
+    edited.edges.new([inside, ends[0]])
+    edited.to_mesh(obj.data)
+    edited.free()
+    chosen = choose(obj, middle)
+    result = remesh()
+    assert_rest_kept(Rest(obj.data, chosen), result.data, int((~chosen).sum()))
+    points = points_of(result)
+    assert {(0, 0, 1), (0, 0, 2)} <= {tuple(point) for point in points.tolist()}
+    loose = [tuple(edge.vertices) for edge in result.data.edges if edge.is_loose]
+    assert [{tuple(points[v]) for v in edge} for edge in loose] == [{(0, 0, 0), (0, 0, 1)}]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import bmesh
@@ -14,8 +16,6 @@ from ..core.part_weld import PartResult
 from .part_layers import copy_layers
 from .part_normals import CornerNormals, read_normals, write_normals
 from .transfer import buffers
-
-_NEW = 1 << 30  # indices of new elements begin here until they are sorted in behind the old ones
 
 
 class NewElements(NamedTuple):
@@ -79,48 +79,52 @@ def _exchange(mesh: bpy.types.Mesh, part_mesh: bpy.types.Mesh, result: PartResul
     quads = buffers.read(part_mesh.loops, "vertex_index", np.int32).reshape(-1, 4)
     places = buffers.read(part_mesh.vertices, "co", np.float32, 3)
     is_new = result.whole_vertices < 0
+    kept = _kept_vertices(mesh, result.part)
+    are_selected = bool(buffers.read(mesh.polygons, "select", np.bool_)[result.part].all())
+    with _edited(mesh) as edited:
+        edited.faces.ensure_lookup_table()
+        faces = [edited.faces[index] for index in np.flatnonzero(result.part).tolist()]
+        bmesh.ops.delete(edited, geom=faces, context="FACES")
+    counts = len(mesh.vertices), len(mesh.edges), len(mesh.polygons)
+    if counts[0] != int(kept.sum()) or not kept[result.whole_vertices[~is_new]].all():
+        raise InternalError("other vertices went with the faces than should", "validation")
+    number = np.where(is_new, counts[0] - 1 + np.cumsum(is_new), (np.cumsum(kept) - 1)[result.whole_vertices])
+    # In a bmesh made anew, as in one with gaps new elements would come to lie between old ones.
+    with _edited(mesh) as edited:
+        for place in places[is_new].tolist():
+            edited.verts.new(place)
+        edited.verts.ensure_lookup_table()
+        for quad in number[quads].tolist():
+            edited.faces.new([edited.verts[vertex] for vertex in quad]).select_set(are_selected)
+    found = buffers.read(mesh.loops, "vertex_index", np.int32)[-quads.size :]
+    if not np.array_equal(found, number[quads].ravel()):
+        raise InternalError("Blender put the quads elsewhere", "validation")
+    return _new_elements(mesh, part_mesh, number, is_new, counts[1], counts[2])
+
+
+@contextlib.contextmanager
+def _edited(mesh: bpy.types.Mesh) -> Iterator[bmesh.types.BMesh]:
     edited = bmesh.new()
     try:
         edited.from_mesh(mesh)
-        for sequence in (edited.verts, edited.edges, edited.faces):
-            sequence.index_update()
-            sequence.ensure_lookup_table()
-        on_border = {index: edited.verts[index] for index in np.unique(result.whole_vertices[~is_new]).tolist()}
-        faces = [edited.faces[index] for index in np.flatnonzero(result.part).tolist()]
-        bmesh.ops.delete(edited, geom=faces, context="FACES")
-        if not all(vertex.is_valid for vertex in on_border.values()):
-            raise InternalError("the border went with the faces", "validation")
-        vertices = []
-        for own, whole in enumerate(result.whole_vertices.tolist()):
-            if whole >= 0:
-                vertices.append(on_border[whole])
-                continue
-            vertex = edited.verts.new(places[own])
-            vertex.index = _NEW + own
-            vertices.append(vertex)
-        old_edges = set(edited.edges)
-        for index, quad in enumerate(quads.tolist()):
-            face = edited.faces.new([vertices[corner] for corner in quad])
-            face.index = _NEW + index
-        for edge in edited.edges:
-            if edge not in old_edges:
-                edge.index = _NEW
-        # Sorting leaves references to elements at places, not at what they stood for: their numbers are asked for before.
-        order = np.sort([vertex.index for vertex in edited.verts])
-        number = np.searchsorted(order, [vertex.index for vertex in vertices])
-        kept_edges, kept_faces = len(old_edges), len(edited.faces) - len(quads)
-        for sequence in (edited.verts, edited.edges, edited.faces):
-            sequence.sort(key=_index_of)  # what was removed has left gaps that new elements came to lie in
-            sequence.index_update()
+        yield edited
         edited.to_mesh(mesh)
     finally:
         edited.free()
-    return _new_elements(mesh, part_mesh, number, is_new, kept_edges, kept_faces)
 
 
-def _index_of(element: Any) -> int:
-    index: int = element.index
-    return index
+def _kept_vertices(mesh: bpy.types.Mesh, part: Any) -> Any:
+    """(n,) bool: those that other faces or loose edges have, or nothing has."""
+    vertices = buffers.read(mesh.loops, "vertex_index", np.int32)
+    of_part = np.repeat(part, buffers.read(mesh.polygons, "loop_total", np.int32))
+    edges = buffers.read(mesh.edges, "vertices", np.int32, 2)
+    is_loose = np.ones(len(edges), np.bool_)
+    is_loose[buffers.read(mesh.loops, "edge_index", np.int32)] = False
+    kept = np.ones(len(mesh.vertices), np.bool_)
+    kept[vertices[of_part]] = False
+    kept[vertices[~of_part]] = True
+    kept[edges[is_loose]] = True
+    return kept
 
 
 def _new_elements(

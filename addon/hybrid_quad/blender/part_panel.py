@@ -33,7 +33,7 @@ class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "use_inverted")
         column = layout.column()
         column.prop(settings, "use_border_length")
-        column.prop(settings, "odd_border")
+        column.prop(settings, "odd_border", text="If Odd")
 
 
 CLASSES = (VIEW3D_PT_hybrid_quad_part,)

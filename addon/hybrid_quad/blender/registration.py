@@ -28,8 +28,10 @@ CLASSES = (
     *operators.CLASSES,
     *selected_objects.CLASSES,
     *check_operators.CLASSES,
-    *panels.CLASSES,
+    # In the order in which they are drawn.
+    *panels.CLASSES[:1],
     *part_panel.CLASSES,
+    *panels.CLASSES[1:],
 )
 # Of the menu Object, in this order.
 MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
