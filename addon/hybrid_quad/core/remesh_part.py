@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from .curve_counts import CurveCount, as_curve_counts
-from .edge_borders import BoolArray, edge_keys
+from .edge_borders import BoolArray
 from .errors import InputError
 from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_edges, as_polygons, as_vertices, require_edges
 from .options import RemeshOptions
+from .part_checks import require_indices, require_sound, require_welded
 from .part_parity import ODD_BORDERS, EvenPart, even_part
-from .part_sheet import FREE, Indices, border_length, sheet_of, sides_of
-from .part_weld import PartResult, rim_of, welded
+from .part_sheet import Indices, border_length, sheet_of
+from .part_weld import PartResult, welded
 from .part_wishes import PartWishes
 from .remesh import CancelCallback, PathLike, ProgressCallback, remesh_with_options
 from .strokes import Stroke, checked_strokes
-from .validation import violations
 
 _NUDGE = 1e-9  # of the diagonal: how far the banks of a cut are apart, so that nobody takes them for a crack to close
 
@@ -138,7 +138,7 @@ def remesh_part(
     asked = RemeshOptions(**options, edge_length=edge_length)
     is_free = quads is None and edge_length is None and asked.chord_error is None
     choice = PartChoice(as_part(part, len(polygons.sizes)), odd_border, is_free)
-    _require_indices(points, polygons)
+    require_indices(points, polygons)
     result = remesh_part_with_options(
         points,
         polygons,
@@ -184,9 +184,9 @@ def remesh_part_with_options(
     if odd_border not in ODD_BORDERS:
         raise ValueError(f"odd_border must be one of {', '.join(ODD_BORDERS)}, not {odd_border!r}")
     chosen = as_part(part, len(polygons.sizes))
-    _require_indices(points, polygons)
+    require_indices(points, polygons)
     even = even_part(points, polygons, chosen, odd_border)
-    _require_welded(points, polygons, even)
+    require_welded(points, polygons, even)
     sheet_points = _nudged(points, even)
     marked = as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
@@ -214,7 +214,7 @@ def remesh_part_with_options(
         raise own.error_of_whole(error) from error
     own.complete_report(result.report, len(own_counts), crossing, int(chosen.sum()))
     found = welded(result, points, even, sheet_points)
-    _require_sound(found, points, polygons)
+    require_sound(found, points, polygons)
     return found
 
 
@@ -278,55 +278,3 @@ def _nudged(points: FloatArray, even: EvenPart) -> FloatArray:
     diagonal = float(np.linalg.norm(np.ptp(sheet_points, axis=0)))
     sheet_points[copies] += (_NUDGE * diagonal * rank)[:, None]
     return sheet_points
-
-
-def _require_indices(points: FloatArray, polygons: Polygons) -> None:
-    outside = (polygons.vertices < 0) | (polygons.vertices >= len(points))
-    if outside.any():
-        faces = np.unique(np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[outside])
-        raise InputError("index_out_of_range", "Faces have vertices that do not exist.", "face", faces.tolist())
-
-
-def _require_welded(points: FloatArray, polygons: Polygons, even: EvenPart) -> None:
-    """Vertices in one place would be merged: at the border that joins the rest, or across a crack beside the rest."""
-    sheet, of_rest = even.sheet, np.repeat(~even.part, polygons.sizes)
-    used = np.unique(polygons.vertices)
-    places = np.full(len(points), -1, np.int64)
-    places[used] = np.unique(points[used], axis=0, return_inverse=True)[1].reshape(-1)
-    is_doubled = (np.bincount(places[used]) > 1)[places] & (places >= 0)
-    rest = np.unique(polygons.vertices[of_rest])
-    shared = np.unique(sheet.origin[sheet.shared])
-    free = np.setdiff1d(sheet.origin[sheet.sides[sheet.kinds == FREE]], rest)
-    found = np.union1d(shared[is_doubled[shared]], free[np.isin(places[free], places[rest])])
-    if len(found):
-        raise InputError(
-            "unwelded_border",
-            f"{len(found)} vertices at the border of the chosen faces lie in one place with others. Merge them first, or choose "
-            "other faces.",
-            "vertex",
-            found.tolist(),
-        )
-
-
-def _require_sound(result: PartResult, points: FloatArray, polygons: Polygons) -> None:
-    """The quads are valid by themselves, and none of their edges inside is one of the rest's."""
-    problems = violations(result.vertices, result.quads)
-    if problems:
-        raise InputError(
-            "part_too_coarse",
-            f"The chosen faces are too few for quads of this size ({'; '.join(problems)}). Ask for smaller ones.",
-        )
-    sides = result.whole_vertices[np.stack([result.quads, np.roll(result.quads, -1, axis=1)], axis=-1).reshape(-1, 2)]
-    keys = edge_keys(sides[(sides >= 0).all(axis=1)], len(points))  # type: ignore[arg-type]
-    rim = edge_keys(result.whole_vertices[rim_of(result.quads)], len(points))  # type: ignore[arg-type]
-    of_rest = np.repeat(~result.part, polygons.sizes)
-    rest = edge_keys(sides_of(polygons)[of_rest], len(points))  # type: ignore[arg-type]
-    doubled = np.intersect1d(np.setdiff1d(keys, rim), rest)
-    if len(doubled):
-        raise InputError(
-            "part_too_coarse",
-            f"{len(doubled)} edges of the quads would join vertices that an edge of the rest joins already. Ask for smaller "
-            "quads, or choose more faces.",
-            "edge",
-            np.stack(np.divmod(doubled, len(points)), axis=1).reshape(-1).tolist(),
-        )
