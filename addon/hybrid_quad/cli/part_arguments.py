@@ -11,11 +11,11 @@ from ..core.options import RemeshOptions
 from ..core.part_files import read_part
 from ..core.part_parity import ODD_BORDERS
 from ..core.part_weld import PartResult
-from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.remesh import RemeshResult
 from ..core.remesh_part import PartChoice, PartRemesh, as_part, joined, remesh_part_with_options
 
 
-def add_part(parser: argparse.ArgumentParser) -> None:
+def add_part(parser: argparse._ActionsContainer) -> None:
     """Adds the options."""
     parser.add_argument(
         "--part",
@@ -32,10 +32,10 @@ def add_part(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def solver_of(
+def part_solver(
     arguments: argparse.Namespace, vertices: FloatArray, polygons: Polygons, options: RemeshOptions
-) -> tuple[Callable[..., RemeshResult], RemeshOptions]:
-    """What remeshes the whole mesh or the part, and the options for it.
+) -> tuple[Callable[..., RemeshResult], RemeshOptions] | None:
+    """What remeshes the part, and the options for it; None where the whole mesh is remeshed.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def solver_of(
         If the file cannot be read, or names faces that are not there.
     """
     if arguments.part is None:
-        return remesh_with_options, options
+        return None
     faces = as_part(read_part(arguments.part), len(polygons.sizes))
     is_free = arguments.quads is None and arguments.edge_length is None and arguments.chord_error is None
     choice = PartChoice(faces, arguments.odd_border, is_free)

@@ -15,13 +15,13 @@ from ..core.mesh_arrays import FloatArray
 from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
 from ..core.parent_process import end_with_stdin
 from ..core.part_files import write_polygons
-from ..core.remesh import RemeshResult
+from ..core.remesh import RemeshResult, remesh_with_options
 from ..core.remesh_part import PartRemesh
 from ..core.strokes import KINDS, Stroke, joined_lines
 from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say
-from .part_arguments import add_part, joined_mesh, solver_of
+from .part_arguments import add_part, joined_mesh, part_solver
 from .progress_bar import ProgressBar
 
 
@@ -37,7 +37,6 @@ def add_to(commands: Any) -> None:
     parser.add_argument("input", metavar="IN", help="mesh file: .obj, .ply, .stl or .off")
     parser.add_argument("output", metavar="OUT", help="result: .obj, .ply or .off")
     add_settings(parser)
-    add_part(parser)
     parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
     parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there (needs Pillow)")
     parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
@@ -154,6 +153,7 @@ def add_settings(parser: argparse._ActionsContainer) -> None:
         metavar="origin|bounds|X,Y,Z",
         help="where the mirror planes meet: the origin (default), the middle of the bounding box, or a point",
     )
+    add_part(parser)
     parser.add_argument(
         "--solver",
         choices=SOLVERS,
@@ -255,7 +255,7 @@ def _remesh(
     curve_counts = None if arguments.curve_counts is None else mesh_io.read_counts(arguments.curve_counts)
     density = _numbers(arguments.density, 1, len(vertices))
     frames = _numbers(arguments.frames, 6, len(vertices))
-    solve, asked = solver_of(arguments, vertices, polygons, options)
+    solve, asked = part_solver(arguments, vertices, polygons, options) or (remesh_with_options, options)
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
         raise Cancelled("the time limit passed while the mesh was read", "time_limit")
     with ProgressBar(arguments.quiet) as bar:
