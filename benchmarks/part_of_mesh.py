@@ -25,7 +25,7 @@ from hybrid_quad.core.remesh_part import PartRemesh
 from runs import COLLECTION
 
 MODELS = ["c3d_spot_triangulated", "c3d_fandisk", "c3d_suzanne", "dir_bunny1k", "igl_beetle", "dir_camelhead"]
-HEADER = "| chosen | runs | joined | of these cut and closed | with an inverted corner | refused |"
+HEADER = "| chosen | runs | joined | of these cut and closed | with an inverted corner, of those at the border's size | refused |"
 
 
 def main() -> int:
@@ -119,7 +119,9 @@ def run(vertices: FloatArray, polygons: Polygons, part: BoolArray, size: float |
         return [error.code]
     outcome = ["joined" if is_joined(vertices, polygons, result) else "wrong"]
     outcome += ["cut"] * bool(result.report["part"]["cuts"])
-    return outcome + ["inverted"] * (result.report["scaled_jacobian"]["min"] < 0)
+    if size is None:
+        outcome += ["own size"] + ["inverted"] * (result.report["scaled_jacobian"]["min"] < 0)
+    return outcome
 
 
 def is_joined(vertices: FloatArray, polygons: Polygons, result: PartRemesh) -> bool:
@@ -138,10 +140,12 @@ def table(counts: dict[str, Counter[str]]) -> str:
     """The outcomes as Markdown."""
     lines = [HEADER, "|---|--:|--:|--:|--:|---|"]
     for kind, count in counts.items():
-        refused = {code: n for code, n in count.items() if code not in ("joined", "cut", "inverted")}
+        refused = {code: n for code, n in count.items() if code not in ("joined", "cut", "own size", "inverted")}
         runs = count["joined"] + sum(refused.values())
         why = ", ".join(f"{n} `{code}`" for code, n in sorted(refused.items())) or "-"
-        lines.append(f"| {kind} | {runs} | {count['joined']} | {count['cut']} | {count['inverted']} | {why} |")
+        lines.append(
+            f"| {kind} | {runs} | {count['joined']} | {count['cut']} | {count['inverted']} of {count['own size']} | {why} |"
+        )
     return "\n".join(lines)
 
 
