@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .core.options import RemeshOptions
     from .core.preview import Preview, preview
     from .core.remesh import RemeshResult, remesh
+    from .core.remesh_part import PartRemesh, remesh_part
     from .core.repair import Repaired, repair
     from .core.strokes import Stroke, guides_from_strokes
     from .core.subdivision import Subdivided, subdivide, surface_distances
@@ -37,6 +38,7 @@ __all__ = [
     "Defect",
     "InputError",
     "InternalError",
+    "PartRemesh",
     "Preview",
     "RemeshOptions",
     "RemeshResult",
@@ -48,6 +50,7 @@ __all__ = [
     "mesh_arrays",
     "preview",
     "remesh",
+    "remesh_part",
     "repair",
     "subdivide",
     "surface_distances",
@@ -64,6 +67,8 @@ _MODULE_OF = {
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "PartRemesh": "remesh_part",
+    "remesh_part": "remesh_part",
     "Repaired": "repair",
     "repair": "repair",
     "Stroke": "strokes",

@@ -145,6 +145,18 @@ class VertexStore(NamedTuple):
         return layers[0].data if layers else None
 
 
+# Attributes of marks that a mesh has only where something is marked.
+MARK_ATTRIBUTES = frozenset(
+    [
+        "sharp_edge",
+        "uv_seam",
+        "crease_vert",
+        "bevel_weight_vert",
+        "freestyle_face",
+        *(store.attribute for store in _STORES if store.attribute),
+    ]
+)
+
 VERTEX_CREASE = VertexStore("crease_vert", "vertex_creases", "crease")
 VERTEX_BEVEL = VertexStore("bevel_weight_vert", "bevel_weight", "bevel_weight")
 

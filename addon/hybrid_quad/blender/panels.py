@@ -21,6 +21,7 @@ from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
 from .repair_operators import OBJECT_OT_hybrid_quad_repair
 from .result_mesh import read_report
+from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
 from .transfer.kinds import KINDS
 
 
@@ -64,12 +65,15 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
             layout.label(text="install a release of the add-on")
         settings = context.object.hybrid_quad
         column = layout.column()
+        column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length
         column.prop(settings, "target_mode")
         column.prop(settings, SIZE_SETTINGS[settings.target_mode])
         layout.prop(settings, "result_mode")
         button = layout.row()
         button.scale_y = 1.5
         button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
+        if sum(obj.type == "MESH" for obj in context.selected_objects) > 1:
+            layout.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
 
 
 class VIEW3D_PT_hybrid_quad_features(HybridQuadPanel, bpy.types.Panel):

@@ -7,6 +7,7 @@ import math
 import bpy
 
 from ..core.options import AXES, MOST_QUADS, RemeshOptions
+from . import part_properties
 from .edge_marks import SOURCES
 from .transfer.kinds import KINDS
 
@@ -255,6 +256,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     transfer: bpy.props.PointerProperty(
         type=HybridQuadTransferSettings, name="Transfer", description="What the result takes along"
     )
+    part: bpy.props.PointerProperty(
+        type=part_properties.HybridQuadPartSettings, name="Region", description="Which faces are remeshed"
+    )
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"
     )
@@ -295,4 +299,4 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         return "".join(letter for letter, is_used in zip(AXES, self.symmetry_axes, strict=True) if is_used)
 
 
-CLASSES = (HybridQuadTransferSettings, HybridQuadSettings)
+CLASSES = (HybridQuadTransferSettings, *part_properties.CLASSES, HybridQuadSettings)

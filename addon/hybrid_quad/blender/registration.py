@@ -17,10 +17,12 @@ from . import (
     command,
     operators,
     panels,
+    part_panel,
     presets,
     properties,
     repair_operators,
     run_display,
+    selected_objects,
 )
 from .preview import limit, sessions
 from .preview import panels as preview_panels
@@ -30,15 +32,20 @@ CLASSES = (
     *properties.CLASSES,
     *preview_settings.CLASSES,
     *operators.CLASSES,
+    *selected_objects.CLASSES,
     *check_operators.CLASSES,
     *repair_operators.CLASSES,
     *presets.CLASSES,
     *limit.CLASSES,
+    # Panels stand in the order in which they come here.
     *panels.CLASSES[:1],
-    *preview_panels.CLASSES[:1],  # panels stand in the order in which they come here
+    *preview_panels.CLASSES[:1],
+    *part_panel.CLASSES,
     *panels.CLASSES[1:],
     *preview_panels.CLASSES[1:],
 )
+# Of the menu Object, in this order.
+MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
 
 
 def register() -> None:
@@ -54,7 +61,8 @@ def register() -> None:
     )
     sessions.register()
     run_display.register()
-    bpy.types.VIEW3D_MT_object.append(operators.draw_menu_entry)
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.append(entry)
     command.register()
 
 
@@ -64,7 +72,8 @@ def unregister() -> None:
     sessions.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
-    bpy.types.VIEW3D_MT_object.remove(operators.draw_menu_entry)
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.remove(entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
     if hasattr(bpy.types.WindowManager, "hybrid_quad_preview"):

@@ -11,7 +11,9 @@ from ..core.errors import InternalError
 from ..core.guide_values import guides_of_vertices
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.options import RemeshOptions
+from ..core.part_weld import PartResult
 from ..core.remesh import CancelCallback, ProgressCallback, RemeshResult, remesh_with_options, usual_length
+from ..core.remesh_part import PartChoice, remesh_part_with_options
 from ..core.strokes import Stroke, guides_from_strokes, stronger_of
 from ..core.validation import violations
 from .bundle import Arrays, save_bundle
@@ -40,6 +42,8 @@ class RemeshRequest:
         How far strokes of kind ``"direction"`` act, in edge lengths of the quads.
     density : (n,) float64 or None
         2 for edges half as long.
+    part : PartChoice or None
+        The faces to remesh, where that is not all.
     """
 
     vertices: FloatArray
@@ -52,9 +56,14 @@ class RemeshRequest:
     strokes: tuple[Stroke, ...] = ()
     stroke_radius: float = 2.0
     density: FloatArray | None = None
+    part: PartChoice | None = None
 
     kind: ClassVar[str] = "remesh"
-    result_type: ClassVar[type[RemeshResult]] = RemeshResult
+
+    @property
+    def result_type(self) -> type[RemeshResult]:
+        """The class of the result."""
+        return RemeshResult if self.part is None else PartResult
 
     @property
     def time_limit(self) -> float | None:
@@ -82,6 +91,8 @@ class RemeshRequest:
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does; ``InternalError`` also where the result is no valid quad mesh.
         """
+        if self.part is not None:
+            return self._solve_part(self.part, progress, cancel)
         result = remesh_with_options(
             self.vertices,
             self.polygons,
@@ -99,6 +110,25 @@ class RemeshRequest:
             raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
         return result
 
+    def _solve_part(
+        self, part: PartChoice, progress: ProgressCallback | None, cancel: CancelCallback | None
+    ) -> RemeshResult:
+        asked = part.options_for(self.vertices, self.polygons, self.options)
+        return remesh_part_with_options(
+            self.vertices,
+            self.polygons,
+            asked,
+            part=part.faces,
+            odd_border=part.odd_border,
+            sharp_edges=self.sharp_edges,
+            curve_counts=self.curve_counts,
+            guides=dataclasses.replace(self, options=asked).directions(),
+            strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
+            density=self.density,
+            progress=progress,
+            cancel=cancel,
+        )
+
     def save(self, path: Path) -> None:
         """Writes the request to a file for :func:`.kinds.load_request`."""
         arrays, values = self.as_bundle()
@@ -113,6 +143,7 @@ class RemeshRequest:
             "sharp_edges": self.sharp_edges,
             "guides": self.guides,
             "density": self.density,
+            "part": None if self.part is None else self.part.faces,
             **{f"stroke_{index}": stroke.points for index, stroke in enumerate(self.strokes)},
         }
         values = {
@@ -121,6 +152,7 @@ class RemeshRequest:
             "guides_of_faces": self.guides_of_faces,
             "strokes": [[stroke.strength, stroke.kind] for stroke in self.strokes],
             "stroke_radius": self.stroke_radius,
+            "part": None if self.part is None else [self.part.odd_border, self.part.uses_border_length],
         }
         return {name: array for name, array in arrays.items() if array is not None}, values
 
@@ -144,4 +176,5 @@ class RemeshRequest:
             ),
             stroke_radius=values["stroke_radius"],
             density=arrays.get("density"),
+            part=None if values["part"] is None else PartChoice(arrays["part"], *values["part"]),
         )
