@@ -8,14 +8,17 @@ import bpy
 
 import hybrid_quad
 from hybrid_quad.blender import command, registration
+from hybrid_quad.blender.painting import paint_tool, stroke_view
 
 
 def _traces() -> list[str]:
     names = [name for name in dir(bpy.types) if "hybrid_quad" in name.lower()]
-    names += [name for name in dir(bpy.types.Object) if "hybrid_quad" in name]
+    names += [name for owner in (bpy.types.Object, bpy.types.Scene) for name in dir(owner) if "hybrid_quad" in name]
+    names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
+    names += ["drawing"] * len(stroke_view._handles)
     draw = getattr(bpy.types.VIEW3D_MT_object.draw, "_draw_funcs", [])
     names += [function.__name__ for function in draw if "hybrid_quad" in function.__module__]
-    names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name]
+    names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name] + dir(bpy.ops.hybrid_quad)
     return names + ["command"] * len(command._handles)
 
 

@@ -108,7 +108,7 @@ def test_closer_dabs_and_going_over_it_again_make_a_stroke_no_stronger():
     inside = np.abs(surface.positions[:, 0] - 0.5) < 0.25  # where the ends' dabs lie is another matter
     for other in (twice, dense):
         strengths = np.linalg.norm(other, axis=1), np.linalg.norm(once, axis=1)
-        assert strengths[0][inside] == pytest.approx(strengths[1][inside], abs=0.02)
+        assert strengths[0][inside] == pytest.approx(strengths[1][inside], abs=0.03)
     assert np.linalg.norm(once, axis=1).max() == pytest.approx(0.5, abs=0.01)
 
 

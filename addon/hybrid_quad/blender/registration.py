@@ -12,8 +12,15 @@ except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
 from . import background_run, check_operators, command, operators, panels, properties, run_display
+from .painting import registration as painting
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES)
+CLASSES = (
+    *properties.CLASSES,
+    *operators.CLASSES,
+    *check_operators.CLASSES,
+    *panels.CLASSES,
+    *painting.CLASSES,
+)
 
 
 def register() -> None:
@@ -25,6 +32,7 @@ def register() -> None:
         type=properties.HybridQuadSettings, name="Hybrid Quad", description="How this object is remeshed"
     )
     run_display.register()
+    painting.register()
     bpy.types.VIEW3D_MT_object.append(operators.draw_menu_entry)
     command.register()
 
@@ -37,6 +45,7 @@ def unregister() -> None:
     bpy.types.VIEW3D_MT_object.remove(operators.draw_menu_entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
+    painting.unregister()
     run_display.unregister()
     for cls in reversed(CLASSES):
         with contextlib.suppress(RuntimeError):  # not registered

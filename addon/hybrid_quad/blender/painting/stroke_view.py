@@ -1,0 +1,239 @@
+"""What is painted, and the brush, drawn over the 3D view while the tool is active."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+
+from ...core.mesh_arrays import FloatArray, IntArray
+from ...core.painting.brush_surface import BrushSurface
+from ...core.surface_points import fan_triangles
+from . import paint_surface, stored_values
+from .paint_stroke import PaintStroke
+
+TOOL = "hybrid_quad.paint"
+
+_DIRECTION = np.array([0.2, 0.95, 0.55, 0.95])
+_LINE = (1.0, 0.6, 0.1, 1.0)
+_DENSER, _COARSER = np.array([0.95, 0.45, 0.05]), np.array([0.1, 0.45, 0.95])
+_RIM = {"NORMAL": (1.0, 1.0, 1.0, 0.8), "SMOOTH": (0.6, 0.8, 1.0, 0.9), "INVERT": (1.0, 0.55, 0.5, 0.9)}
+_CELLS = 90  # about as many directions along the longest side of a mesh at most
+_LIFT = 0.002  # of the mesh's size: what is drawn is so far above the surface
+_CORNERS_OF_CIRCLE = 64
+
+_stroke: PaintStroke | None = None
+_handles: list[tuple[Callable[..., None], Any]] = []
+
+
+class _Batch(NamedTuple):
+    surface: BrushSurface
+    kind: str
+    values: FloatArray
+    points: FloatArray
+    batch: Any
+
+
+_latest: _Batch | None = None
+
+
+def show(stroke: PaintStroke | None) -> None:
+    """From now on shows a stroke under way, or none."""
+    global _stroke
+    _stroke = stroke
+
+
+def forget() -> None:
+    """Lets go of all that is kept."""
+    global _stroke, _latest
+    _stroke = _latest = None
+
+
+def is_tool_active(context: bpy.types.Context) -> bool:
+    """Whether ours is the active tool of the window's mode."""
+    tool = context.workspace.tools.from_space_view3d_mode(context.mode, create=False)
+    return tool is not None and tool.idname == TOOL
+
+
+def draw_painted() -> None:
+    """Handler of the 3D view: directions or densities on the active object, and the line being drawn."""
+    context = bpy.context
+    obj = context.object
+    if obj is None or obj.type != "MESH" or not is_tool_active(context) or not context.space_data.overlay.show_overlays:
+        return
+    if not obj.visible_get() or not len(obj.data.polygons):
+        return
+    kind = context.scene.hybrid_quad_brush.kind
+    with _blended():
+        if kind in ("DIRECTION", "DENSITY"):
+            _draw_values(obj, kind)
+        elif _stroke is not None and len(_stroke.way) > 1:
+            _draw_way(_stroke)
+
+
+def draw_cursor(place: tuple[int, int]) -> None:
+    """Handler of the mouse pointer: the brush's circle."""
+    context = bpy.context
+    if context.region is None or context.region.type != "WINDOW" or not is_tool_active(context):
+        return
+    radius = context.scene.hybrid_quad_brush.size
+    angle = np.linspace(0, 2 * np.pi, _CORNERS_OF_CIRCLE, endpoint=False)
+    rim = np.stack([place[0] + radius * np.cos(angle), place[1] + radius * np.sin(angle), 0 * angle], axis=1)
+    shader = _shader("POLYLINE_UNIFORM_COLOR")
+    batch = batch_for_shader(shader, "LINE_LOOP", {"pos": rim.astype(np.float32)})
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", 1.5)
+    shader.uniform_float("color", _RIM["NORMAL" if _stroke is None else _stroke.settings.mode])
+    gpu.state.blend_set("ALPHA")
+    batch.draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+class _blended:
+    """Drawing onto the view's depth, nothing behind the surface."""
+
+    def __enter__(self) -> None:
+        gpu.state.blend_set("ALPHA")
+        gpu.state.depth_test_set("LESS_EQUAL")
+        gpu.state.depth_mask_set(False)
+
+    def __exit__(self, *_: object) -> None:
+        gpu.state.depth_mask_set(True)
+        gpu.state.depth_test_set("NONE")
+        gpu.state.blend_set("NONE")
+
+
+def _shader(name: str) -> Any:
+    # Before Blender 4.0 the names said how many dimensions there are.
+    return gpu.shader.from_builtin(name if bpy.app.version >= (4, 0, 0) else f"3D_{name}")
+
+
+def _draw_values(obj: bpy.types.Object, kind: str) -> None:
+    found = _values_of(obj, kind)
+    if found is None:
+        return
+    surface, values, points = found
+    global _latest
+    kept = _latest
+    if (
+        kept is None
+        or kept.surface is not surface
+        or kept.kind != kind
+        or not np.array_equal(kept.values, values)
+        or kept.points is not points
+    ):
+        linear = np.array(obj.matrix_world.to_3x3(), np.float64)
+        make = _direction_batch if kind == "DIRECTION" else _density_batch
+        kept = _latest = _Batch(surface, kind, values.copy(), points, make(surface, values, points, linear))
+    if kept.batch is None:
+        return
+    shader = _shader("POLYLINE_SMOOTH_COLOR" if kind == "DIRECTION" else "SMOOTH_COLOR")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(obj.matrix_world)
+        shader.bind()
+        if kind == "DIRECTION":
+            shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+            shader.uniform_float("lineWidth", 1.8 * bpy.context.preferences.system.pixel_size)
+        kept.batch.draw(shader)
+
+
+def _values_of(obj: bpy.types.Object, kind: str) -> tuple[BrushSurface, FloatArray, Any] | None:
+    """The surface, its values, and where its vertices are seen in the object's space; None where nothing is painted."""
+    if _stroke is not None and _stroke.obj == obj and _stroke.values is not None and _stroke.settings.kind == kind:
+        return _stroke.values.surface, _stroke.values.values, _stroke.surface.shown_points()
+    linear = np.array(obj.matrix_world.to_3x3(), np.float64)
+    try:
+        if not stored_values.is_there(obj.data, kind):
+            return None
+        of_faces = stored_values.are_of_faces(obj.data, kind)
+        values = stored_values.read(obj.data, kind, linear)
+    except stored_values.WrongAttributeError:
+        return None
+    shape = paint_surface.shape_of(obj.data)
+    surface = paint_surface.brush_surface(shape, linear, of_faces=of_faces)
+    if len(values) != len(surface.positions):  # the mesh is being changed
+        return None
+    points = _latest.points if _latest is not None and _latest.surface is surface else shape.points
+    return surface, values, points
+
+
+def _direction_batch(surface: BrushSurface, values: FloatArray, points: Any, linear: FloatArray) -> Any:
+    strength = np.linalg.norm(values, axis=1)
+    size = _size_of(surface)
+    cell = max(size / _CELLS, 1.3 * surface.spacing, 1e-12)
+    painted = np.flatnonzero(strength > 0.02)
+    if not len(painted):
+        return None
+    # Of each cell one, always the same.
+    _, first = np.unique(np.floor(surface.positions[painted] / cell), axis=0, return_index=True)
+    chosen = painted[first]
+    inverse = np.linalg.inv(linear)
+    places = surface.positions[chosen] @ inverse.T if surface.of_faces else points[chosen].astype(np.float64)
+    lifted = places + _LIFT * size * surface.normals[chosen] @ inverse.T
+    along = 0.45 * cell * (values[chosen] / strength[chosen, None]) @ inverse.T
+    ends = np.stack([lifted - along, lifted + along], axis=1).reshape(-1, 3)
+    colors = np.tile(_DIRECTION, (len(chosen), 1))
+    colors[:, 3] *= 0.25 + 0.75 * strength[chosen]
+    content = {"pos": ends.astype(np.float32), "color": np.repeat(colors, 2, axis=0).astype(np.float32)}
+    return batch_for_shader(_shader("POLYLINE_SMOOTH_COLOR"), "LINES", content)
+
+
+def _density_batch(surface: BrushSurface, values: FloatArray, points: Any, linear: FloatArray) -> Any:
+    triangles = _triangles_of(surface)
+    shown = triangles[(np.abs(values) > 1e-3)[triangles].any(axis=1)]
+    if not len(shown):
+        return None
+    amount = np.clip(np.abs(values) / np.log(4), 0, 1)
+    colors = np.empty((len(values), 4))
+    colors[:, :3] = np.where((values > 0)[:, None], _DENSER, _COARSER)
+    colors[:, 3] = 0.75 * np.sqrt(amount)
+    lift = _LIFT * _size_of(surface) * surface.normals @ np.linalg.inv(linear).T
+    content = {"pos": (points + lift).astype(np.float32), "color": colors.astype(np.float32)}
+    return batch_for_shader(_shader("SMOOTH_COLOR"), "TRIS", content, indices=np.ascontiguousarray(shown, np.int32))
+
+
+def _draw_way(stroke: PaintStroke) -> None:
+    points = np.array(stroke.way)
+    shader = _shader("POLYLINE_UNIFORM_COLOR")
+    local = stroke.surface.to_object(points)
+    batch = batch_for_shader(shader, "LINE_STRIP", {"pos": local.astype(np.float32)})
+    gpu.state.depth_test_set("NONE")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(stroke.obj.matrix_world)
+        shader.bind()
+        shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+        shader.uniform_float("lineWidth", 3.0)
+        shader.uniform_float("color", _LINE)
+        batch.draw(shader)
+
+
+def _size_of(surface: BrushSurface) -> float:
+    return float(np.ptp(surface.vertices, axis=0).max())
+
+
+def _triangles_of(surface: BrushSurface) -> IntArray:
+    return fan_triangles(surface.polygons)
+
+
+def register() -> None:
+    """Adds the handlers."""
+    unregister()
+    view = bpy.types.SpaceView3D
+    handle = view.draw_handler_add(draw_painted, (), "WINDOW", "POST_VIEW")
+    _handles.append((lambda: view.draw_handler_remove(handle, "WINDOW"), handle))
+    manager = bpy.types.WindowManager
+    cursor = manager.draw_cursor_add(draw_cursor, (), "VIEW_3D", "WINDOW")
+    _handles.append((lambda: manager.draw_cursor_remove(cursor), cursor))
+
+
+def unregister() -> None:
+    """Takes them away again, where there are any."""
+    while _handles:
+        remove, _handle = _handles.pop()
+        remove()
+    forget()
