@@ -13,7 +13,7 @@ from hybrid_quad.blender.painting import paint_tool, stroke_view
 
 def _traces() -> list[str]:
     names = [name for name in dir(bpy.types) if "hybrid_quad" in name.lower()]
-    names += [name for owner in (bpy.types.Object, bpy.types.Scene) for name in dir(owner) if "hybrid_quad" in name]
+    names += [name for owner in (bpy.types.Object, bpy.types.WorkSpace) for name in dir(owner) if "hybrid_quad" in name]
     names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
     names += ["drawing"] * len(stroke_view._handles)
     draw = getattr(bpy.types.VIEW3D_MT_object.draw, "_draw_funcs", [])

@@ -1,4 +1,7 @@
-"""Settings of the brush that paints guides; they are saved with the scene, as Blender's own brushes' are with the file."""
+"""Settings of the brush that paints guides.
+
+They are saved with the workspace, as other tools' are: undo, which takes strokes back, leaves them alone.
+"""
 
 # No "from __future__ import annotations" here: Blender reads the properties from the annotations' values.
 
@@ -63,7 +66,7 @@ DENSITY_FACTOR = {
 
 
 class HybridQuadBrushSettings(bpy.types.PropertyGroup):
-    """What the tool's header shows; lives on every scene as ``scene.hybrid_quad_brush``."""
+    """What the tool's header shows; lives on every workspace as ``workspace.hybrid_quad_brush``."""
 
     kind: bpy.props.EnumProperty(name="Paint", description="What strokes paint", items=KINDS, default="DIRECTION")
     size: bpy.props.IntProperty(

@@ -134,7 +134,7 @@ class HYBRID_QUAD_OT_paint_guide(PaintingOperator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """The stroke that begins under the mouse."""
-        brush = context.scene.hybrid_quad_brush
+        brush = context.workspace.hybrid_quad_brush
         for name in ("kind", "strength", "falloff", "density_action", "density_factor"):
             if not self.properties.is_property_set(name):
                 setattr(self, name, getattr(brush, name))

@@ -17,12 +17,12 @@ _KEYMAP = (
     (
         "wm.radial_control",
         {"type": "F", "value": "PRESS"},
-        {"properties": [("data_path_primary", "scene.hybrid_quad_brush.size")]},
+        {"properties": [("data_path_primary", "workspace.hybrid_quad_brush.size")]},
     ),
     (
         "wm.radial_control",
         {"type": "F", "value": "PRESS", "shift": True},
-        {"properties": [("data_path_primary", "scene.hybrid_quad_brush.strength")]},
+        {"properties": [("data_path_primary", "workspace.hybrid_quad_brush.strength")]},
     ),
 )
 
@@ -34,7 +34,7 @@ def draw_settings(context: bpy.types.Context, layout: Any, _tool: Any, *, extra:
     if problem:
         layout.label(text=problem, icon="INFO")
         return
-    brush = context.scene.hybrid_quad_brush
+    brush = context.workspace.hybrid_quad_brush
     layout.prop(brush, "kind", text="")
     layout.prop(brush, "size", slider=True)
     if brush.kind in ("DIRECTION", "DENSITY"):

@@ -26,7 +26,7 @@ CLASSES = (
 
 def register() -> None:
     """After the classes, and the panel that the painting's is part of."""
-    bpy.types.Scene.hybrid_quad_brush = bpy.props.PointerProperty(
+    bpy.types.WorkSpace.hybrid_quad_brush = bpy.props.PointerProperty(
         type=brush_settings.HybridQuadBrushSettings,
         name="Hybrid Quad Brush",
         description="The brush that paints guides",
@@ -41,4 +41,4 @@ def unregister() -> None:
     paint_tool.unregister()
     paint_surface.forget()
     with contextlib.suppress(AttributeError):
-        del bpy.types.Scene.hybrid_quad_brush
+        del bpy.types.WorkSpace.hybrid_quad_brush

@@ -9,21 +9,23 @@ import bpy
 import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
 
-from ...core.mesh_arrays import FloatArray, IntArray
+from ...core.mesh_arrays import FloatArray
 from ...core.painting.brush_surface import BrushSurface
 from ...core.surface_points import fan_triangles
 from . import paint_surface, stored_values
 from .paint_stroke import PaintStroke
+from .painted_lines import PaintedLines
 
 TOOL = "hybrid_quad.paint"
 
-_DIRECTION = np.array([0.2, 0.95, 0.55, 0.95])
-_LINE = (1.0, 0.6, 0.1, 1.0)
+_DIRECTION = np.array([0.05, 0.95, 0.4, 1.0])
+_LINES = {"LOOP": (1.0, 0.65, 0.05, 1.0), "RING": (0.25, 0.75, 1.0, 1.0)}
 _DENSER, _COARSER = np.array([0.95, 0.45, 0.05]), np.array([0.1, 0.45, 0.95])
 _RIM = {"NORMAL": (1.0, 1.0, 1.0, 0.8), "SMOOTH": (0.6, 0.8, 1.0, 0.9), "INVERT": (1.0, 0.55, 0.5, 0.9)}
 _CELLS = 90  # about as many directions along the longest side of a mesh at most
-_LIFT = 0.002  # of the mesh's size: what is drawn is so far above the surface
+_LIFT = 0.004  # what is drawn is so much nearer to the viewer than the surface: of the distance, or of the mesh's size
 _CORNERS_OF_CIRCLE = 64
 
 _stroke: PaintStroke | None = None
@@ -60,19 +62,20 @@ def is_tool_active(context: bpy.types.Context) -> bool:
 
 
 def draw_painted() -> None:
-    """Handler of the 3D view: directions or densities on the active object, and the line being drawn."""
+    """Handler of the 3D view: directions, densities or lines on the active object, and the line being drawn."""
     context = bpy.context
     obj = context.object
     if obj is None or obj.type != "MESH" or not is_tool_active(context) or not context.space_data.overlay.show_overlays:
         return
     if not obj.visible_get() or not len(obj.data.polygons):
         return
-    kind = context.scene.hybrid_quad_brush.kind
-    with _blended():
+    kind = context.workspace.hybrid_quad_brush.kind
+    with _blended(), gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(_towards_viewer(context.region_data, max(obj.dimensions)) @ obj.matrix_world)
         if kind in ("DIRECTION", "DENSITY"):
             _draw_values(obj, kind)
-        elif _stroke is not None and len(_stroke.way) > 1:
-            _draw_way(_stroke)
+        else:
+            _draw_lines(obj)
 
 
 def draw_cursor(place: tuple[int, int]) -> None:
@@ -80,7 +83,7 @@ def draw_cursor(place: tuple[int, int]) -> None:
     context = bpy.context
     if context.region is None or context.region.type != "WINDOW" or not is_tool_active(context):
         return
-    radius = context.scene.hybrid_quad_brush.size
+    radius = context.workspace.hybrid_quad_brush.size
     angle = np.linspace(0, 2 * np.pi, _CORNERS_OF_CIRCLE, endpoint=False)
     rim = np.stack([place[0] + radius * np.cos(angle), place[1] + radius * np.sin(angle), 0 * angle], axis=1)
     shader = _shader("POLYLINE_UNIFORM_COLOR")
@@ -108,6 +111,15 @@ class _blended:
         gpu.state.blend_set("NONE")
 
 
+def _towards_viewer(view: bpy.types.RegionView3D, size: float) -> Matrix:
+    """Moves what is drawn out of the surface without moving it on the screen."""
+    to_world = view.view_matrix.inverted()
+    if not view.is_perspective:
+        return Matrix.Translation(to_world.col[2].xyz.normalized() * _LIFT * size)
+    eye = to_world.translation
+    return Matrix.Translation(eye) @ Matrix.Scale(1 - _LIFT, 4) @ Matrix.Translation(-eye)
+
+
 def _shader(name: str) -> Any:
     # Before Blender 4.0 the names said how many dimensions there are.
     return gpu.shader.from_builtin(name if bpy.app.version >= (4, 0, 0) else f"3D_{name}")
@@ -133,13 +145,11 @@ def _draw_values(obj: bpy.types.Object, kind: str) -> None:
     if kept.batch is None:
         return
     shader = _shader("POLYLINE_SMOOTH_COLOR" if kind == "DIRECTION" else "SMOOTH_COLOR")
-    with gpu.matrix.push_pop():
-        gpu.matrix.multiply_matrix(obj.matrix_world)
-        shader.bind()
-        if kind == "DIRECTION":
-            shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-            shader.uniform_float("lineWidth", 1.8 * bpy.context.preferences.system.pixel_size)
-        kept.batch.draw(shader)
+    shader.bind()
+    if kind == "DIRECTION":
+        shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+        shader.uniform_float("lineWidth", 2.2 * bpy.context.preferences.system.pixel_size)
+    kept.batch.draw(shader)
 
 
 def _values_of(obj: bpy.types.Object, kind: str) -> tuple[BrushSurface, FloatArray, Any] | None:
@@ -174,17 +184,16 @@ def _direction_batch(surface: BrushSurface, values: FloatArray, points: Any, lin
     chosen = painted[first]
     inverse = np.linalg.inv(linear)
     places = surface.positions[chosen] @ inverse.T if surface.of_faces else points[chosen].astype(np.float64)
-    lifted = places + _LIFT * size * surface.normals[chosen] @ inverse.T
     along = 0.45 * cell * (values[chosen] / strength[chosen, None]) @ inverse.T
-    ends = np.stack([lifted - along, lifted + along], axis=1).reshape(-1, 3)
+    ends = np.stack([places - along, places + along], axis=1).reshape(-1, 3)
     colors = np.tile(_DIRECTION, (len(chosen), 1))
     colors[:, 3] *= 0.25 + 0.75 * strength[chosen]
     content = {"pos": ends.astype(np.float32), "color": np.repeat(colors, 2, axis=0).astype(np.float32)}
     return batch_for_shader(_shader("POLYLINE_SMOOTH_COLOR"), "LINES", content)
 
 
-def _density_batch(surface: BrushSurface, values: FloatArray, points: Any, linear: FloatArray) -> Any:
-    triangles = _triangles_of(surface)
+def _density_batch(surface: BrushSurface, values: FloatArray, points: Any, _linear: FloatArray) -> Any:
+    triangles = fan_triangles(surface.polygons)
     shown = triangles[(np.abs(values) > 1e-3)[triangles].any(axis=1)]
     if not len(shown):
         return None
@@ -192,32 +201,33 @@ def _density_batch(surface: BrushSurface, values: FloatArray, points: Any, linea
     colors = np.empty((len(values), 4))
     colors[:, :3] = np.where((values > 0)[:, None], _DENSER, _COARSER)
     colors[:, 3] = 0.75 * np.sqrt(amount)
-    lift = _LIFT * _size_of(surface) * surface.normals @ np.linalg.inv(linear).T
-    content = {"pos": (points + lift).astype(np.float32), "color": colors.astype(np.float32)}
+    content = {"pos": np.asarray(points, np.float32), "color": colors.astype(np.float32)}
     return batch_for_shader(_shader("SMOOTH_COLOR"), "TRIS", content, indices=np.ascontiguousarray(shown, np.int32))
 
 
-def _draw_way(stroke: PaintStroke) -> None:
-    points = np.array(stroke.way)
-    shader = _shader("POLYLINE_UNIFORM_COLOR")
-    local = stroke.surface.to_object(points)
-    batch = batch_for_shader(shader, "LINE_STRIP", {"pos": local.astype(np.float32)})
-    gpu.state.depth_test_set("NONE")
-    with gpu.matrix.push_pop():
-        gpu.matrix.multiply_matrix(stroke.obj.matrix_world)
+def _draw_lines(obj: bpy.types.Object) -> None:
+    """Loops and rings, and the line that is being drawn."""
+    for kind, color in _LINES.items():
+        lines = [
+            np.concatenate([line.points, line.points[:1]]) if line.is_closed else line.points
+            for line in PaintedLines(obj, kind).read()
+        ]
+        if _stroke is not None and _stroke.obj == obj and _stroke.settings[:2] == (kind, "NORMAL") and _stroke.way:
+            lines.append(_stroke.surface.to_object(np.array(_stroke.way)))
+        pieces = [np.stack([line[:-1], line[1:]], axis=1).reshape(-1, 3) for line in lines if len(line) > 1]
+        if not pieces:
+            continue
+        shader = _shader("POLYLINE_UNIFORM_COLOR")
+        batch = batch_for_shader(shader, "LINES", {"pos": np.concatenate(pieces).astype(np.float32)})
         shader.bind()
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-        shader.uniform_float("lineWidth", 3.0)
-        shader.uniform_float("color", _LINE)
+        shader.uniform_float("lineWidth", 3.0 * bpy.context.preferences.system.pixel_size)
+        shader.uniform_float("color", color)
         batch.draw(shader)
 
 
 def _size_of(surface: BrushSurface) -> float:
     return float(np.ptp(surface.vertices, axis=0).max())
-
-
-def _triangles_of(surface: BrushSurface) -> IntArray:
-    return fan_triangles(surface.polygons)
 
 
 def register() -> None:
