@@ -32,6 +32,8 @@ from scenes import add_object, points_of
 MODEL = Path(__file__).resolve().parents[2] / "data" / "meshes" / "c3d_spot_triangulated.obj"
 # On Spot's flank, as seen along x: (y, z), around her middle.
 STROKE = np.stack([np.linspace(-0.3, 0.55, 31), -0.15 + 0.12 * np.sin(np.linspace(-1.3, 1.5, 31))], axis=1)
+ALONG = np.stack([np.linspace(-0.3, 0.55, 20), np.full(20, -0.12)], axis=1)
+ACROSS = np.stack([np.full(20, 0.25), np.linspace(-0.4, 0.1, 20)], axis=1)
 NEAR = 0.06  # edges as near as this to the stroke are to follow it
 
 
@@ -114,17 +116,16 @@ def steps() -> Iterator[float]:
 
     print("-- a loop and a ring", flush=True)
     brush().kind = "LOOP"
-    yield from drag(STROKE, picture="paint_loop_stroke.png")
+    yield from drag(ALONG, picture="paint_loop_stroke.png")
     expect(len(model().children) == 1, "a line is a child of the mesh")
     brush().kind = "RING"
-    across = np.stack([np.full(20, 0.25), np.linspace(-0.4, 0.1, 20)], axis=1)
-    yield from drag(across)
+    yield from drag(ACROSS)
     expect(sorted(child["hybrid_quad_guide_kind"] for child in model().children) == ["loop", "ring"], "so is a ring")
     with in_view():
         bpy.ops.ed.undo()
     yield 0.5
     expect([child["hybrid_quad_guide_kind"] for child in model().children] == ["loop"], "one undo takes the ring back")
-    yield from drag(across)
+    yield from drag(ACROSS)
     yield from take_picture("paint_lines.png")
     result = yield from remesh("paint_lines_result.png")
     guides_met = [guide["met"] for guide in json.loads(result.hybrid_quad.last_report)["guides"]]
