@@ -29,7 +29,7 @@ _LIFT = 0.004  # what is drawn is so much nearer to the viewer than the surface:
 _CORNERS_OF_CIRCLE = 64
 
 _stroke: PaintStroke | None = None
-_handles: list[tuple[Callable[..., None], Any]] = []
+_handles: list[Callable[[], object]] = []  # how to take each away; the pointer's last
 
 
 class _Batch(NamedTuple):
@@ -233,17 +233,29 @@ def _size_of(surface: BrushSurface) -> float:
 def register() -> None:
     """Adds the handlers."""
     unregister()
-    view = bpy.types.SpaceView3D
-    handle = view.draw_handler_add(draw_painted, (), "WINDOW", "POST_VIEW")
-    _handles.append((lambda: view.draw_handler_remove(handle, "WINDOW"), handle))
-    manager = bpy.types.WindowManager
-    cursor = manager.draw_cursor_add(draw_cursor, (), "VIEW_3D", "WINDOW")
-    _handles.append((lambda: manager.draw_cursor_remove(cursor), cursor))
+    handle = bpy.types.SpaceView3D.draw_handler_add(draw_painted, (), "WINDOW", "POST_VIEW")
+    _handles.append(lambda: bpy.types.SpaceView3D.draw_handler_remove(handle, "WINDOW"))
+    _add_cursor()
+    bpy.app.handlers.load_post.append(_add_cursor_to_new_windows)
 
 
 def unregister() -> None:
     """Takes them away again, where there are any."""
     while _handles:
-        remove, _handle = _handles.pop()
-        remove()
+        _handles.pop()()
+    while _add_cursor_to_new_windows in bpy.app.handlers.load_post:
+        bpy.app.handlers.load_post.remove(_add_cursor_to_new_windows)
     forget()
+
+
+def _add_cursor() -> None:
+    cursor = bpy.types.WindowManager.draw_cursor_add(draw_cursor, (), "VIEW_3D", "WINDOW")
+    _handles.append(lambda: bpy.types.WindowManager.draw_cursor_remove(cursor))
+
+
+@bpy.app.handlers.persistent
+def _add_cursor_to_new_windows(*_: object) -> None:
+    """Windows that come with a file know nothing of what is drawn at the mouse pointer."""
+    forget()
+    _handles.pop()()
+    _add_cursor()
