@@ -16,6 +16,7 @@ def _traces() -> list[str]:
     names += [name for owner in (bpy.types.Object, bpy.types.WorkSpace) for name in dir(owner) if "hybrid_quad" in name]
     names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
     names += ["drawing"] * len(stroke_view._handles)
+    names += [f.__name__ for f in bpy.app.handlers.load_post if "hybrid_quad" in f.__module__]
     draw = getattr(bpy.types.VIEW3D_MT_object.draw, "_draw_funcs", [])
     names += [function.__name__ for function in draw if "hybrid_quad" in function.__module__]
     names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name] + dir(bpy.ops.hybrid_quad)

@@ -47,6 +47,10 @@ def draw_settings(context: bpy.types.Context, layout: Any, _tool: Any, *, extra:
         row = layout.row()
         row.active = brush.density_action in ("DENSER", "COARSER")
         row.prop(brush, "density_factor")
+    if context.mode == "OBJECT":  # Sculpt Mode's header has them
+        row = layout.row(align=True)
+        for axis in "xyz":
+            row.prop(context.object.data, f"use_mirror_{axis}", text=axis.upper(), toggle=True)
 
 
 class _PaintTool:

@@ -33,14 +33,17 @@ _handles: list[Callable[[], object]] = []  # how to take each away; the pointer'
 
 
 class _Batch(NamedTuple):
-    surface: BrushSurface
+    owner: int
     kind: str
+    linear: FloatArray
+    surface: BrushSurface
     values: FloatArray
-    points: FloatArray
+    points: Any
     batch: Any
 
 
 _latest: _Batch | None = None
+_is_current = False  # whether nothing can have changed since `_latest` was made
 
 
 def show(stroke: PaintStroke | None) -> None:
@@ -51,8 +54,9 @@ def show(stroke: PaintStroke | None) -> None:
 
 def forget() -> None:
     """Lets go of all that is kept."""
-    global _stroke, _latest
+    global _stroke, _latest, _is_current
     _stroke = _latest = None
+    _is_current = False
 
 
 def is_tool_active(context: bpy.types.Context) -> bool:
@@ -84,10 +88,10 @@ def draw_cursor(place: tuple[int, int]) -> None:
     if context.region is None or context.region.type != "WINDOW" or not is_tool_active(context):
         return
     radius = context.workspace.hybrid_quad_brush.size
-    angle = np.linspace(0, 2 * np.pi, _CORNERS_OF_CIRCLE, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, _CORNERS_OF_CIRCLE + 1)
     rim = np.stack([place[0] + radius * np.cos(angle), place[1] + radius * np.sin(angle), 0 * angle], axis=1)
     shader = _shader("POLYLINE_UNIFORM_COLOR")
-    batch = batch_for_shader(shader, "LINE_LOOP", {"pos": rim.astype(np.float32)})
+    batch = batch_for_shader(shader, "LINE_STRIP", {"pos": rim.astype(np.float32)})
     shader.bind()
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
     shader.uniform_float("lineWidth", 1.5)
@@ -126,23 +130,8 @@ def _shader(name: str) -> Any:
 
 
 def _draw_values(obj: bpy.types.Object, kind: str) -> None:
-    found = _values_of(obj, kind)
-    if found is None:
-        return
-    surface, values, points = found
-    global _latest
-    kept = _latest
-    if (
-        kept is None
-        or kept.surface is not surface
-        or kept.kind != kind
-        or not np.array_equal(kept.values, values)
-        or kept.points is not points
-    ):
-        linear = np.array(obj.matrix_world.to_3x3(), np.float64)
-        make = _direction_batch if kind == "DIRECTION" else _density_batch
-        kept = _latest = _Batch(surface, kind, values.copy(), points, make(surface, values, points, linear))
-    if kept.batch is None:
+    kept = _batch_of(obj, kind)
+    if kept is None or kept.batch is None:
         return
     shader = _shader("POLYLINE_SMOOTH_COLOR" if kind == "DIRECTION" else "SMOOTH_COLOR")
     shader.bind()
@@ -150,6 +139,34 @@ def _draw_values(obj: bpy.types.Object, kind: str) -> None:
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         shader.uniform_float("lineWidth", 2.2 * bpy.context.preferences.system.pixel_size)
     kept.batch.draw(shader)
+
+
+def _batch_of(obj: bpy.types.Object, kind: str) -> _Batch | None:
+    """What is drawn for an object's values, made anew where they, or their places, are others."""
+    global _latest, _is_current
+    linear = np.array(obj.matrix_world.to_3x3(), np.float64)
+    kept = _latest
+    if kept is not None and (
+        kept.owner != obj.as_pointer() or kept.kind != kind or not np.array_equal(kept.linear, linear)
+    ):
+        kept = None
+    if kept is not None and _is_current and _stroke is None:
+        return kept
+    found = _values_of(obj, kind)
+    if found is None:
+        return None
+    surface, values, points = found
+    if (
+        kept is None
+        or kept.surface is not surface
+        or kept.points is not points
+        or not np.array_equal(kept.values, values)
+    ):
+        make = _direction_batch if kind == "DIRECTION" else _density_batch
+        batch = make(surface, values, points, linear)
+        _latest = kept = _Batch(obj.as_pointer(), kind, linear, surface, values.copy(), points, batch)
+    _is_current = _stroke is None
+    return kept
 
 
 def _values_of(obj: bpy.types.Object, kind: str) -> tuple[BrushSurface, FloatArray, Any] | None:
@@ -236,16 +253,28 @@ def register() -> None:
     handle = bpy.types.SpaceView3D.draw_handler_add(draw_painted, (), "WINDOW", "POST_VIEW")
     _handles.append(lambda: bpy.types.SpaceView3D.draw_handler_remove(handle, "WINDOW"))
     _add_cursor()
-    bpy.app.handlers.load_post.append(_add_cursor_to_new_windows)
+    for handlers, function in _app_handlers():
+        handlers.append(function)
 
 
 def unregister() -> None:
     """Takes them away again, where there are any."""
     while _handles:
         _handles.pop()()
-    while _add_cursor_to_new_windows in bpy.app.handlers.load_post:
-        bpy.app.handlers.load_post.remove(_add_cursor_to_new_windows)
+    for handlers, function in _app_handlers():
+        while function in handlers:
+            handlers.remove(function)
     forget()
+
+
+def _app_handlers() -> list[tuple[Any, Callable[..., None]]]:
+    handlers = bpy.app.handlers
+    return [
+        (handlers.load_post, _on_load),
+        (handlers.depsgraph_update_post, _on_change),
+        (handlers.undo_post, _on_change),
+        (handlers.redo_post, _on_change),
+    ]
 
 
 def _add_cursor() -> None:
@@ -254,8 +283,14 @@ def _add_cursor() -> None:
 
 
 @bpy.app.handlers.persistent
-def _add_cursor_to_new_windows(*_: object) -> None:
+def _on_load(*_: object) -> None:
     """Windows that come with a file know nothing of what is drawn at the mouse pointer."""
     forget()
     _handles.pop()()
     _add_cursor()
+
+
+@bpy.app.handlers.persistent
+def _on_change(*_: object) -> None:
+    global _is_current
+    _is_current = False
