@@ -237,7 +237,7 @@ def click(x: int, y: int) -> Iterator[float]:
 def drag(places: np.ndarray, picture: str = "", cancel: bool = False, **keys: bool) -> Iterator[float]:
     window, _ = view()
     yield from move_to(places[0])
-    way = [pixel(place) for place in places[:: 1 if picture else 3]]
+    way = [pixel(place) for place in places[::3]]
     window.event_simulate(type="LEFTMOUSE", value="PRESS", x=way[0][0], y=way[0][1], **keys)
     yield 0.3
     for index, (x, y) in enumerate(way[1:]):

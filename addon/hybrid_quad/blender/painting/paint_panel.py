@@ -21,6 +21,7 @@ class VIEW3D_PT_hybrid_quad_painting(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Hybrid Quad"
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -28,10 +29,6 @@ class VIEW3D_PT_hybrid_quad_painting(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        button = layout.row()
-        button.enabled = context.mode in ("OBJECT", "SCULPT")
-        depress = button.enabled and is_tool_active(context)
-        button.operator("wm.tool_set_by_id", text="Paint Guides", icon="BRUSH_DATA", depress=depress).name = TOOL
         obj = context.object
         column = layout.column(align=True)
         for identifier, name, _description, icon, _number in KINDS:
@@ -48,6 +45,14 @@ class VIEW3D_PT_hybrid_quad_painting(bpy.types.Panel):
             part = row.row(align=True)
             part.enabled = is_there
             part.operator(HYBRID_QUAD_OT_density_from_layer.bl_idname, text=name).source = source
+
+
+def draw_tool_button(self: Any, context: bpy.types.Context) -> None:
+    """Top of the panel of guides."""
+    button = self.layout.row()
+    button.enabled = context.mode in ("OBJECT", "SCULPT")
+    depress = button.enabled and is_tool_active(context)
+    button.operator("wm.tool_set_by_id", text="Paint Guides", icon="BRUSH_DATA", depress=depress).name = TOOL
 
 
 def _state_of(obj: bpy.types.Object, kind: str) -> str:

@@ -6,6 +6,7 @@ import contextlib
 
 import bpy
 
+from ..panels import VIEW3D_PT_hybrid_quad_guides
 from . import (
     brush_settings,
     density_operator,
@@ -31,6 +32,7 @@ def register() -> None:
         name="Hybrid Quad Brush",
         description="The brush that paints guides",
     )
+    VIEW3D_PT_hybrid_quad_guides.prepend(paint_panel.draw_tool_button)
     paint_tool.register()
     stroke_view.register()
 
@@ -39,6 +41,7 @@ def unregister() -> None:
     """Before the classes; safe to call where nothing is registered."""
     stroke_view.unregister()
     paint_tool.unregister()
+    VIEW3D_PT_hybrid_quad_guides.remove(paint_panel.draw_tool_button)
     paint_surface.forget()
     with contextlib.suppress(AttributeError):
         del bpy.types.WorkSpace.hybrid_quad_brush
