@@ -127,9 +127,10 @@ class VIEW3D_PT_hybrid_quad_guides(HybridQuadPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.object.hybrid_quad
-        column = layout.column(heading="Attributes")
+        column = layout.column(heading="Painted")
         column.prop(settings, "use_guide_attribute", text="Direction")
         column.prop(settings, "use_density_attribute", text="Density")
+        column.prop(settings, "use_painted_lines", text="Lines")
         column = layout.column()
         column.prop(settings, "guide_object", text="Object")
         if settings.guide_object and settings.guide_object.type not in LINE_TYPES:

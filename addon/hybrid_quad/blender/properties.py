@@ -215,6 +215,11 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         description='Make quads smaller where the attribute "hybrid_quad_density" (float, points) is more than 1',
         default=True,
     )
+    use_painted_lines: bpy.props.BoolProperty(
+        name="Painted Lines",
+        description="Let quads follow or cross the loops and rings painted on this object (curve objects that are its children)",
+        default=True,
+    )
     adaptivity: bpy.props.FloatProperty(
         name="Adaptivity",
         description="Smaller quads where the surface bends more; 0: all of one size",

@@ -24,6 +24,7 @@ from . import (
     run_display,
     selected_objects,
 )
+from .painting import registration as painting
 from .preview import limit, sessions
 from .preview import panels as preview_panels
 from .preview import settings as preview_settings
@@ -43,6 +44,7 @@ CLASSES = (
     *part_panel.CLASSES,
     *panels.CLASSES[1:],
     *preview_panels.CLASSES[1:],
+    *painting.CLASSES,
 )
 # Of the menu Object, in this order.
 MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
@@ -61,6 +63,7 @@ def register() -> None:
     )
     sessions.register()
     run_display.register()
+    painting.register()
     for entry in MENU_ENTRIES:
         bpy.types.VIEW3D_MT_object.append(entry)
     command.register()
@@ -78,6 +81,7 @@ def unregister() -> None:
         del bpy.types.Object.hybrid_quad
     if hasattr(bpy.types.WindowManager, "hybrid_quad_preview"):
         del bpy.types.WindowManager.hybrid_quad_preview
+    painting.unregister()
     run_display.unregister()
     for cls in reversed(CLASSES):
         with contextlib.suppress(RuntimeError):  # not registered
