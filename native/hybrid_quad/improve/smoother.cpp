@@ -70,7 +70,7 @@ void Smoother::update_reference(int q) {
 }
 
 void Smoother::update_shape(int q) {
-  constexpr double kAgrees = 0.3, kLongest = 4.0, kLeastArea = 0.02;
+  constexpr double kAgrees = 0.3, kLongest = 4.0, kLongestInStrip = 32.0, kLeastArea = 0.02;
   const auto& v = piece_.mesh.quad(q);
   const auto& p = piece_.mesh.positions;
   QuadFrame& frame = frames_[q];
@@ -79,8 +79,11 @@ void Smoother::update_shape(int q) {
   frame.normal = own.dot(frame.reference) > kAgrees ? own : frame.reference;
   const double u = 0.5 * ((p[v[0]] - p[v[1]]).norm() + (p[v[2]] - p[v[3]]).norm());
   const double w = 0.5 * ((p[v[1]] - p[v[2]]).norm() + (p[v[3]] - p[v[0]]).norm());
-  const double ratio = u > 0 && w > 0 ? std::max(1 / kLongest, std::min(kLongest, w / u)) : 1.0;
-  frame.aspect = std::pow(ratio, options_.aspect_power);
+  // Between two curves the width is given: what can change there is how straight a quad crosses.
+  const bool is_in_strip = std::none_of(v.begin(), v.end(), [&](int corner) { return piece_.mesh.is_free(corner); });
+  const double longest = is_in_strip ? kLongestInStrip : kLongest;
+  const double ratio = u > 0 && w > 0 ? std::clamp(w / u, 1 / longest, longest) : 1.0;
+  frame.aspect = is_in_strip ? ratio : std::pow(ratio, options_.aspect_power);
   own_area_[q] = std::max(area.dot(frame.normal), std::max(kLeastArea * u * w, 1e-6 * piece_.h * piece_.h));
 }
 
