@@ -421,6 +421,23 @@ TEST(Improve, ThinStripKeepsItsTwoSides) {
   expect_on_features(quads, surface);
 }
 
+TEST(Improve, QuadsCrossAThinStripStraight) {
+  // Each curve alone is evenly divided already; what is left to better is how the two divisions face each other.
+  const int n = 12;
+  const double height = 0.02;
+  const Surface surface(test::open_cylinder(120, 2, 1, height));
+  QuadMesh quads = tube(n, 1, 1, height);
+  for (int v = n; v < 2 * n; ++v) quads.positions[v] = Eigen::AngleAxisd(2 * 2 * M_PI / 120, Vector3::UnitZ()) * quads.positions[v];
+  bind(quads, surface);
+  const double before = shape_quality(quads).scaled_jacobian_mean;
+  ASSERT_LT(before, 0.75);
+  ImproveOptions options;
+  options.edit_connectivity = false;
+  improve(quads, surface, options);
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_mean, 0.95);
+  expect_on_features(quads, surface);
+}
+
 TEST(Improve, ClosedCurves) {
   const Surface surface(test::open_cylinder(40, 12));
   QuadMesh quads = tube(20, 6);
