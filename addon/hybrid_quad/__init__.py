@@ -14,8 +14,12 @@ if TYPE_CHECKING:
     from .core.check import Defect, check
     from .core.mesh_objects import mesh_arrays
     from .core.options import RemeshOptions
+    from .core.preview import Preview, preview
     from .core.remesh import RemeshResult, remesh
+    from .core.remesh_part import PartRemesh, remesh_part
+    from .core.repair import Repaired, repair
     from .core.strokes import Stroke, guides_from_strokes
+    from .core.subdivision import Subdivided, subdivide, surface_distances
 
 bl_info = {
     "name": "Hybrid Quad",
@@ -34,13 +38,22 @@ __all__ = [
     "Defect",
     "InputError",
     "InternalError",
+    "PartRemesh",
+    "Preview",
     "RemeshOptions",
     "RemeshResult",
+    "Repaired",
     "Stroke",
+    "Subdivided",
     "check",
     "guides_from_strokes",
     "mesh_arrays",
+    "preview",
     "remesh",
+    "remesh_part",
+    "repair",
+    "subdivide",
+    "surface_distances",
 ]
 
 # Names that need numpy or the compiled module are loaded on first use, so that Blender can register the add-on, and
@@ -49,11 +62,20 @@ _MODULE_OF = {
     "Defect": "check",
     "check": "check",
     "mesh_arrays": "mesh_objects",
+    "Preview": "preview",
+    "preview": "preview",
     "RemeshOptions": "options",
     "RemeshResult": "remesh",
     "remesh": "remesh",
+    "PartRemesh": "remesh_part",
+    "remesh_part": "remesh_part",
+    "Repaired": "repair",
+    "repair": "repair",
     "Stroke": "strokes",
     "guides_from_strokes": "strokes",
+    "Subdivided": "subdivision",
+    "subdivide": "subdivision",
+    "surface_distances": "subdivision",
 }
 
 

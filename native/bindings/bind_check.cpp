@@ -3,13 +3,23 @@
 #include <pybind11/numpy.h>
 
 #include "defect_list.h"
+#include "hybrid_quad/mesh/indexed_surface.h"
 #include "polygon_arrays.h"
 
 namespace py = pybind11;
 
 namespace hybrid_quad {
 
-void bind_check(py::module_& module) {
+namespace {
+
+BuiltMesh built_without_gil(const PolygonSoup& soup) {
+  const py::gil_scoped_release release;
+  return build_mesh(soup);
+}
+
+}  // namespace
+
+void bind_check(py::module_& module, const ErrorTypes& errors) {
   module.def(
       "check",
       [](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices) {
@@ -22,6 +32,26 @@ void bind_check(py::module_& module) {
         return list_of_defects(defects);
       },
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), "Defects of a polygon mesh, as dicts.");
+  module.def(
+      "repair",
+      [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices) {
+        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
+        try {
+          const BuiltMesh built = built_without_gil(soup);
+          const IndexedSurface surface = indexed_surface(built);
+          py::dict out;
+          out["vertices"] = array_from_points(surface.positions);
+          out["triangles"] = array_from_rows(surface.triangles);
+          out["vertex_origins"] = array_from_values(surface.input_vertex);
+          out["face_origins"] = array_from_values(surface.input_face);
+          out["defects"] = list_of_defects(built.defects);
+          return out;
+        } catch (const InputError& error) {
+          raise_in_python(errors, error);
+        }
+      },
+      py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"),
+      "The triangle mesh that a run works with, what it was made of and what was repaired, as a dict.");
 }
 
 }  // namespace hybrid_quad

@@ -9,6 +9,7 @@
 
 #include "callback_bridge.h"
 #include "defect_list.h"
+#include "hybrid_quad/pipeline/preview.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "polygon_arrays.h"
 
@@ -224,6 +225,38 @@ py::dict dict_of_result(const RemeshResult& result) {
   return out;
 }
 
+py::dict dict_of_preview(const Preview& found) {
+  py::array_t<double> lines({static_cast<py::ssize_t>(found.feature_lines.size()), py::ssize_t{2}, py::ssize_t{3}});
+  double* out_line = lines.mutable_data();
+  for (const std::array<Vector3, 2>& line : found.feature_lines)
+    for (const Vector3& end : line) out_line = std::copy(end.data(), end.data() + 3, out_line);
+  py::dict out;
+  out["points"] = array_from_points(found.points);
+  out["normals"] = array_from_points(found.normals);
+  out["u"] = array_from_points(found.u);
+  out["v"] = array_from_points(found.v);
+  out["spread"] = array_from_values(found.spread);
+  out["singular_points"] = array_from_points(found.singular_points);
+  out["singular_quarters"] = array_from_values(found.singular_quarters);
+  out["feature_lines"] = lines;
+  out["quad_vertices"] = array_from_points(found.quads.positions);
+  out["quads"] = array_from_rows(found.quads.quads);
+  out["wanted_quads"] = found.wanted;
+  out["warnings"] = found.warnings;
+  out["defects"] = list_of_defects(found.defects);
+  out["stages"] = list_of_stages(found.stages);
+  return out;
+}
+
+enum class StopAfter { kNothing, kField, kQuads };
+
+StopAfter stop_named(const std::string& stage) {
+  if (stage.empty()) return StopAfter::kNothing;
+  if (stage == "field") return StopAfter::kField;
+  if (stage == "quads") return StopAfter::kQuads;
+  throw py::value_error("stop_after must be '', 'field' or 'quads'");
+}
+
 /// What the core assumes where a caller says nothing; the Python options must say the same.
 py::dict default_options() {
   const RemeshOptions options;
@@ -267,6 +300,11 @@ RemeshResult run_without_gil(const PolygonSoup& soup, const RemeshOptions& optio
   return remesh(soup, options, context);
 }
 
+Preview preview_without_gil(const PolygonSoup& soup, const RemeshOptions& options, bool with_quads, const RunContext& context) {
+  const py::gil_scoped_release release;
+  return preview(soup, options, with_quads, context);
+}
+
 }  // namespace
 
 void bind_remesh(py::module_& module, const ErrorTypes& errors) {
@@ -282,7 +320,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
                bool fit_limit_surface, const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
                double memory_limit, py::object progress,
-               py::object cancel, py::object snapshot) {
+               py::object cancel, py::object snapshot, const std::string& stop_after) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         RemeshOptions options;
         options.quads = quads;
@@ -306,8 +344,15 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.fit_limit_surface = fit_limit_surface;
         options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
+        const StopAfter stop = stop_named(stop_after);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), {time_limit, memory_limit});
         try {
+          if (stop != StopAfter::kNothing) {
+            const Preview found = preview_without_gil(soup, options, stop == StopAfter::kQuads, bridge.context(seed, threads));
+            bridge.rethrow_pending();
+            bridge.finish("done");
+            return dict_of_preview(found);
+          }
           const RemeshResult result = run_without_gil(soup, options, bridge.context(seed, threads));
           bridge.rethrow_pending();
           bridge.finish("done");
@@ -331,8 +376,9 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("fit_limit_surface"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("progress").none(true),
-      py::arg("cancel").none(true), py::arg("snapshot").none(true),
-      "Quad mesh, feature edges and report of one run, as a dict.");
+      py::arg("cancel").none(true), py::arg("snapshot").none(true), py::arg("stop_after") = "",
+      "Quad mesh, feature edges and report of one run, as a dict. With stop_after 'field' or 'quads' only what the stages up to\n"
+      "there say: frames, singularities, features, and the quads of one try before they are improved.");
 }
 
 }  // namespace hybrid_quad

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 
 import bpy
+import pytest
 
 from hybrid_quad.blender.check_operators import read_check
 from scenes import add_object, add_sphere
@@ -89,3 +91,39 @@ def test_the_list_is_kept_as_json():
     obj = _with_fin()
     bpy.ops.object.hybrid_quad_check()
     assert json.loads(obj.hybrid_quad.last_check) == read_check(obj)
+
+
+def test_a_repaired_copy_has_nothing_to_repair_and_the_object_stays():
+    obj = _with_fin()
+    obj.location.x = 2
+    material = bpy.data.materials.new("Red")
+    obj.data.materials.append(material)
+    before = len(obj.data.vertices), len(obj.data.polygons)
+    assert bpy.ops.object.hybrid_quad_repair() == {"FINISHED"}
+    copy = bpy.context.object
+    assert copy.name == "Fin Repaired" and copy.location.x == 2 and copy.data.materials[0] == material
+    assert (len(obj.data.vertices), len(obj.data.polygons)) == before and obj.hide_get()
+    assert not copy.data.validate()
+    assert max(_faces_of_edges(copy).values()) == 2
+
+
+def test_a_repaired_copy_has_nothing_to_repair():
+    faces = [TETRAHEDRON[0][::-1], *TETRAHEDRON[1:], TETRAHEDRON[1]]
+    obj = add_object("Wrong", [*CORNERS, (5, 5, 5)], faces)
+    bpy.ops.object.hybrid_quad_check()
+    assert {"flipped_face", "duplicate_face", "isolated_vertex"} <= set(_codes(obj))
+    assert bpy.ops.object.hybrid_quad_repair() == {"FINISHED"}
+    bpy.ops.object.hybrid_quad_check()
+    assert read_check(bpy.context.object) == []
+
+
+def _faces_of_edges(obj: bpy.types.Object) -> Counter:
+    return Counter(key for polygon in obj.data.polygons for key in polygon.edge_keys)
+
+
+def test_what_cannot_be_repaired_leaves_no_copy():
+    add_object("Flat", [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
+    before = len(bpy.data.objects), len(bpy.data.meshes)
+    with pytest.raises(RuntimeError, match="area"):
+        bpy.ops.object.hybrid_quad_repair()
+    assert (len(bpy.data.objects), len(bpy.data.meshes)) == before

@@ -7,15 +7,20 @@ from pathlib import Path
 import bpy
 
 import hybrid_quad
-from hybrid_quad.blender import command, registration
+from hybrid_quad.blender import command, panels, registration
+from hybrid_quad.blender.painting import paint_tool, stroke_view
 
 
 def _traces() -> list[str]:
     names = [name for name in dir(bpy.types) if "hybrid_quad" in name.lower()]
-    names += [name for name in dir(bpy.types.Object) if "hybrid_quad" in name]
-    draw = getattr(bpy.types.VIEW3D_MT_object.draw, "_draw_funcs", [])
-    names += [function.__name__ for function in draw if "hybrid_quad" in function.__module__]
-    names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name]
+    names += [name for owner in (bpy.types.Object, bpy.types.WorkSpace) for name in dir(owner) if "hybrid_quad" in name]
+    names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
+    names += ["drawing"] * len(stroke_view._handles)
+    names += [f.__name__ for f in bpy.app.handlers.load_post if "hybrid_quad" in f.__module__]
+    for owner in (bpy.types.VIEW3D_MT_object, panels.VIEW3D_PT_hybrid_quad_guides):
+        added = getattr(owner.draw, "_draw_funcs", [])
+        names += [f.__name__ for f in added if "hybrid_quad" in f.__module__ and f.__name__ != "draw"]
+    names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name] + dir(bpy.ops.hybrid_quad)
     return names + ["command"] * len(command._handles)
 
 

@@ -273,12 +273,12 @@ def test_a_material_made_anew_meanwhile_is_found():
 
 def test_every_type_on_every_domain():
     """What cannot be mixed comes from the source as it is; what can lies between its values."""
-    from hybrid_quad.blender.transfer.attributes import _STORAGES
+    from hybrid_quad.blender.transfer.attributes import STORAGES
 
     source = add_grid(quads=60)
     rng = np.random.default_rng(3)
     kinds = {}
-    for data_type, storage in _STORAGES.items():
+    for data_type, storage in STORAGES.items():
         for domain in ("POINT", "EDGE", "FACE", "CORNER"):
             if data_type == "FLOAT2" and domain == "CORNER":
                 continue  # which is a UV map from Blender 3.5 on
@@ -299,7 +299,7 @@ def test_every_type_on_every_domain():
     for name, (data_type, domain) in kinds.items():
         attribute = result.data.attributes[name]
         assert (attribute.data_type, attribute.domain) == (data_type, domain)
-        storage = _STORAGES[data_type]
+        storage = STORAGES[data_type]
         if data_type == "STRING":
             assert len({item.value for item in attribute.data if item.value}) == 5, name
             continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import signal
 import subprocess
@@ -19,8 +20,11 @@ from hybrid_quad.core.options import RemeshOptions
 from hybrid_quad.core.strokes import Stroke
 from hybrid_quad.worker import process
 from hybrid_quad.worker.death import WorkerDied
-from hybrid_quad.worker.process import WorkerRun
-from hybrid_quad.worker.request import RemeshRequest, load_request
+from hybrid_quad.worker.kinds import load_request
+from hybrid_quad.worker.limit_request import LimitRequest
+from hybrid_quad.worker.preview_request import PreviewRequest
+from hybrid_quad.worker.process import WorkerRun, WorkerSeat
+from hybrid_quad.worker.request import RemeshRequest
 
 NO_EDGES = np.zeros((0, 2), np.int32)
 PATIENCE = 60  # seconds until a test gives up waiting
@@ -90,6 +94,48 @@ def test_the_result_is_that_of_a_run_in_this_process(start):
         ours, theirs = getattr(found, name), getattr(expected, name)
         assert ours.dtype == theirs.dtype and ours.tobytes() == theirs.tobytes(), name
     assert {**found.report, "stages": 0} == {**expected.report, "stages": 0}
+
+
+def test_a_preview_is_that_of_this_process(start):
+    stroke = Stroke(np.array([(-0.5, 0, 0), (0.5, 0.2, 0)]), 1.0)
+    run = dataclasses.replace(wave(quads=300, sharp_angle=None), strokes=(stroke,))
+    found, expected = (each(PreviewRequest(run, with_quads=True)) for each in (lambda r: start(r).result(), solve))
+    for name in ("crosses", "cross_sizes", "features", "quads", "guides", "singular_points", "singular_quarters"):
+        assert np.array_equal(getattr(found, name), getattr(expected, name)), name
+    assert len(found.crosses) == len(found.cross_sizes) > 300 and len(found.quads) > 300 and len(found.guides) > 1
+    assert found.report["wanted_quads"] == pytest.approx(300)
+
+
+def test_a_limit_surface_is_that_of_this_process(start):
+    source, none = wave(), np.zeros(0)
+    creases = np.array([(0, 1)], np.int32)
+    request = LimitRequest(
+        source.vertices,
+        source.polygons,
+        creases,
+        np.ones(1),
+        none.astype(np.int32),
+        none,
+        source.vertices,
+        source.polygons,
+    )
+    found, expected = start(request).result(), request.solve()
+    for name in ("vertices", "normals", "quads", "distances"):
+        assert np.array_equal(getattr(found, name), getattr(expected, name)), name
+    assert 0 < found.distances.max() < 0.1
+
+
+def test_a_seat_waits_for_its_request_and_can_be_left(start, tmp_path):
+    seat, unused = (WorkerSeat(temporary_folder=str(tmp_path)) for _ in range(2))
+    time.sleep(0.5)
+    assert seat.is_there() and unused.is_there()
+    assert len(start(wave(quads=200), seat=seat).result().quads) > 100
+    unused.leave()
+    assert not unused.is_there() and is_gone(unused.process.pid)
+
+
+def solve(request):
+    return request.solve()
 
 
 def test_a_request_is_read_as_it_was_written(tmp_path):

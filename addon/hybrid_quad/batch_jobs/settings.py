@@ -32,6 +32,8 @@ KINDS: dict[str, type | str] = {
     "fit_limit": bool,
     "symmetry": str,
     "symmetry_center": str,
+    "part": "file",
+    "odd_border": str,
     "solver": str,
     "seed": int,
     "threads": int,

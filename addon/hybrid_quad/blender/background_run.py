@@ -79,6 +79,20 @@ class BackgroundRun:
             raise InputError("object_gone", f'"{self.source.name}" was deleted during the run; its result is dropped')
         return obj
 
+    def can_be_placed(self, context: bpy.types.Context) -> bool:
+        """Whether Blender is in a mode in which the result can go to its place."""
+        if context.mode == "OBJECT":
+            return True
+        return self.task.part is not None and context.mode == "EDIT_MESH" and context.object == self.source.find()
+
+    def require_same_mesh(self, obj: bpy.types.Object) -> None:
+        """Raises InputError ``mesh_changed`` where a part's mesh is not the one any more that it is a part of."""
+        if self.source.has_changed_mesh(obj):
+            raise InputError(
+                "mesh_changed",
+                f'"{obj.name}" was edited during the run, so its faces are not those that were remeshed; the result is dropped',
+            )
+
 
 _current: BackgroundRun | None = None
 

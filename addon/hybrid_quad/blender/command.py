@@ -23,6 +23,7 @@ from ..core.mesh_io import MeshFileError, replacing
 from ..core.options import AXES, RemeshOptions
 from ..core.parent_process import end_with_stdin
 from ..core.strokes import KINDS
+from . import part_arguments
 from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
@@ -182,6 +183,7 @@ def _parser() -> argparse.ArgumentParser:
             action=argparse.BooleanOptionalAction,
             help=f"take along {kind.label.lower()}, or do not",
         )
+    part_arguments.add_part(parser)
     place = parser.add_mutually_exclusive_group()
     place.add_argument(
         "--new-object", dest="result_mode", action="store_const", const="NEW", help="result in a new object"
@@ -326,6 +328,7 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
             settings.symmetry_axes = [letter in options.symmetry.replace("none", "") for letter in AXES]
     if options.result_mode is not None:
         settings.result_mode = options.result_mode
+    part_arguments.apply_part(obj, options)
 
 
 # Arguments that are settings of the same name.

@@ -145,6 +145,18 @@ class VertexStore(NamedTuple):
         return layers[0].data if layers else None
 
 
+# Attributes of marks that a mesh has only where something is marked.
+MARK_ATTRIBUTES = frozenset(
+    [
+        "sharp_edge",
+        "uv_seam",
+        "crease_vert",
+        "bevel_weight_vert",
+        "freestyle_face",
+        *(store.attribute for store in _STORES if store.attribute),
+    ]
+)
+
 VERTEX_CREASE = VertexStore("crease_vert", "vertex_creases", "crease")
 VERTEX_BEVEL = VertexStore("bevel_weight_vert", "bevel_weight", "bevel_weight")
 
@@ -204,7 +216,7 @@ def write(mesh: bpy.types.Mesh, edges: IntArray, values: EdgeValues) -> None:
     """Gives those edges of a mesh that are given as vertex pairs the marks and weights that Blender can keep."""
     if not len(edges):
         return
-    place = _indices_of(mesh, edges)
+    place = indices_of(mesh, edges)
     weights = {CREASE: values.crease, BEVEL: values.bevel}
     for store in _STORES:
         has = (values.marks & store.mark) != 0
@@ -219,12 +231,19 @@ def crease(mesh: bpy.types.Mesh, edges: IntArray, vertices: npt.NDArray[np.int64
     if len(edges):
         store = next(store for store in _STORES if store.mark == CREASE)
         of_edge = _read_store(mesh, store).astype(np.float32)
-        of_edge[_indices_of(mesh, edges)] = 1.0
+        of_edge[indices_of(mesh, edges)] = 1.0
         _write_store(mesh, store, of_edge)
     if len(vertices):
         of_vertex = np.zeros(len(mesh.vertices), np.float32)
         of_vertex[vertices] = 1.0
         VERTEX_CREASE.write(mesh, of_vertex)
+
+
+def hard_edges(mesh: bpy.types.Mesh) -> npt.NDArray[np.bool_]:
+    """(k,) which edges of a mesh are marked as sharp or have a crease."""
+    found = [_read_store(mesh, store) > 0 for store in _STORES if store.mark in (SHARP, CREASE)]
+    hard: npt.NDArray[np.bool_] = np.logical_or.reduce(found)
+    return hard
 
 
 def add_sharp_by_angle(
@@ -278,7 +297,8 @@ def _read(collection: Any, name: str, dtype: type, width: int = 1) -> Any:
     return values
 
 
-def _indices_of(mesh: bpy.types.Mesh, edges: IntArray) -> Any:
+def indices_of(mesh: bpy.types.Mesh, edges: IntArray) -> Any:
+    """(k,) places among a mesh's edges of edges given as vertex pairs."""
     own = _read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2)
     keys = edge_keys(own, len(mesh.vertices))
     order = np.argsort(keys)

@@ -19,7 +19,8 @@ _PENCIL_TYPES = ("GPENCIL", "GREASEPENCIL")
 _LINE_TYPES_OF_COLLECTION = tuple(kind for kind in LINE_TYPES if kind not in ("MESH", "FONT", "SURFACE"))
 
 
-# Custom property of a guide object, or its collection, that says what its lines are for: one of KINDS.
+# Custom property of a guide object, or its collection, that says what its lines are for: one of KINDS. Children of the object
+# that have it guide without being named: painted lines are such.
 KIND_PROPERTY = "hybrid_quad_guide_kind"
 
 
@@ -28,6 +29,8 @@ def lines_of_settings(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[tup
     objects = [settings.guide_object] if settings.guide_object else []
     if settings.guide_collection:
         objects += [obj for obj in settings.guide_collection.all_objects if obj.type in _LINE_TYPES_OF_COLLECTION]
+    if settings.use_painted_lines:
+        objects += [child for child in settings.id_data.children if child.type in LINE_TYPES and _own_kind(child)]
     unique = {obj.name_full: obj for obj in objects}
     default = settings.guide_objects_kind.lower()
     named = {obj.name_full for obj in settings.guide_collection.all_objects} if settings.guide_collection else set()

@@ -119,10 +119,7 @@ def read_source(
             "not_evaluated",
             f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown',
         )
-    linear = np.array(evaluated.matrix_world.to_3x3(), np.float64)
-    scales = np.linalg.svd(linear, compute_uv=False)
-    if not np.isfinite(linear).all() or scales[2] <= _FLATTEST * scales[0]:
-        raise InputError("flat_scale", f'"{obj.name}" is scaled to zero along an axis, so it has no surface to remesh')
+    linear = linear_of(obj, depsgraph)
     if along_axes:
         linear = np.diag(np.linalg.norm(linear, axis=0))
     with at_rest(obj, depsgraph, kinds or frozenset()) as rest:
@@ -131,7 +128,7 @@ def read_source(
         try:
             if not mesh.polygons:
                 raise InputError("no_faces", f'"{obj.name}" has no faces')
-            source = _copy_of(mesh, linear)
+            source = source_of(mesh, linear)
             if kinds is None:
                 return source
             own = layers.read(rest, mesh, linear, kinds)
@@ -142,6 +139,15 @@ def read_source(
         if seen is not None and len(seen) != len(points):
             seen = None  # the modifiers make other vertices: nothing says which is which
         return replace(source, layers=layers.with_keys(own, rest, depsgraph, points), seen=seen)
+
+
+def linear_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
+    """(3, 3) object space to world space, without the translation; raises InputError ``flat_scale``."""
+    linear = np.array(obj.evaluated_get(depsgraph).matrix_world.to_3x3(), np.float64)
+    scales = np.linalg.svd(linear, compute_uv=False)
+    if not np.isfinite(linear).all() or scales[2] <= _FLATTEST * scales[0]:
+        raise InputError("flat_scale", f'"{obj.name}" is scaled to zero along an axis, so it has no surface to remesh')
+    return linear
 
 
 def _seen(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
@@ -157,7 +163,8 @@ def _points(mesh: bpy.types.Mesh) -> FloatArray:
     return points
 
 
-def _copy_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
+def source_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
+    """A mesh, taken to the run's space by `linear` (3, 3), without layers."""
     starts = _read(mesh.polygons, "loop_start", np.int32)
     sizes = _read(mesh.polygons, "loop_total", np.int32)
     corners = _read(mesh.loops, "vertex_index", np.int32)

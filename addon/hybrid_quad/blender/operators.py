@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Collection
 from typing import Any
 
 import bpy
@@ -15,6 +16,7 @@ from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
 from .background_run import BackgroundRun
+from .edit_mode import out_of_edit_mode
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay
@@ -33,47 +35,27 @@ class ActiveMeshOperator(bpy.types.Operator):
         return not problem
 
 
-class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
-    """Rebuild the surface of the active object from quads that follow its sharp edges and its shape"""
+class RemeshOperator(ActiveMeshOperator):
+    """Remeshes objects, at once or by worker processes."""
 
-    bl_idname = "object.hybrid_quad_remesh"
-    bl_label = "Remesh to Quads"
-    # Not REGISTER: repeating it from the list of operators would run it with the window frozen.
-    bl_options = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        run = background_run.current()
-        if run is not None:
-            cls.poll_message_set(f'"{run.source.name}" is being remeshed: wait for it, or cancel it')
-            return False
-        if not native.is_there():
-            cls.poll_message_set("The compiled part is missing: install a release of the add-on")
-            return False
-        return super().poll(context)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """The whole run at once: for scripts and Blender without a window."""
-        obj = context.object
+    def _now(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
+        """A whole run."""
         try:
             task = prepare_task(obj, context.evaluated_depsgraph_get())
             return self._finish(context, obj, task, task.solve(), Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Leaves the run to a worker process; the user goes on working."""
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
+    def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
+        """Leaves a run to a worker process; the operator is then modal."""
         try:
-            task = prepare_task(context.object, context.evaluated_depsgraph_get())
-            self._run = background_run.start(task, context.object)
+            task = prepare_task(obj, context.evaluated_depsgraph_get())
+            self._run = background_run.start(task, obj)
         except Exception as error:
             return self._fail(error)
         self._display = RunDisplay(self._run)
         self._run.on_forget = self._end_modal
         self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        context.window_manager.modal_handler_add(self)
         self._display.update(context)
         return {"RUNNING_MODAL"}
 
@@ -81,12 +63,12 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
         """Every event goes on to Blender. What another operator or a text field is busy with does not even come here."""
         if background_run.current() is not self._run:  # it was ended from outside
             return {"CANCELLED", "PASS_THROUGH"}
-        if _is_escape(context, event) and not self._run.is_finished:
+        if is_escape(context, event) and not self._run.is_finished:
             _drop(self, self._run)
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if not self._run.worker.poll() or (self._run.has_result and context.mode != "OBJECT"):
+        if not self._run.worker.poll() or (self._run.has_result and not self._run.can_be_placed(context)):
             self._display.update(context)
             return {"PASS_THROUGH"}
         background_run.forget()
@@ -107,6 +89,9 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
 
     def _placement(self, context: bpy.types.Context, obj: bpy.types.Object) -> Placement:
         """Where the result goes, with regard to what the user did meanwhile."""
+        if self._run.task.part is not None:
+            self._run.require_same_mesh(obj)
+            return Placement(self._run.in_place, takes_selection=context.view_layer.objects.active == obj)
         is_changed = obj.mode != "OBJECT" or self._run.source.has_changed(obj)
         if is_changed:
             self.report(
@@ -128,7 +113,9 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
         result: RemeshResult,
         placement: Placement,
     ) -> set[str]:
-        target = place_result(context, obj, task, result, placement)
+        with out_of_edit_mode(obj):
+            target = place_result(context, obj, task, result, placement)
+        self._target = target.name
         for defect in result.report["defects"]:
             self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
         for warning in result.report["warnings"]:
@@ -140,6 +127,37 @@ class OBJECT_OT_hybrid_quad_remesh(ActiveMeshOperator):
     def _fail(self, error: Exception) -> set[str]:
         self.report({"ERROR"}, message_of(error))
         return {"CANCELLED"}
+
+
+class OBJECT_OT_hybrid_quad_remesh(RemeshOperator):
+    """Rebuild the surface of the active object from quads that follow its sharp edges and its shape"""
+
+    bl_idname = "object.hybrid_quad_remesh"
+    bl_label = "Remesh to Quads"
+    # Not REGISTER: repeating it from the list of operators would run it with the window frozen.
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        obj = context.object
+        is_part = obj is not None and obj.type == "MESH" and obj.hybrid_quad.part.region != "WHOLE"
+        problem = why_not_now() or problem_of(context, ("OBJECT", "EDIT") if is_part else ("OBJECT",))
+        if problem:
+            cls.poll_message_set(problem)
+        return not problem
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """The whole run at once: for scripts and Blender without a window."""
+        return self._now(context, context.object)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Leaves the run to a worker process; the user goes on working."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        state = self._begin(context, context.object)
+        if "RUNNING_MODAL" in state:
+            context.window_manager.modal_handler_add(self)
+        return state
 
 
 class OBJECT_OT_hybrid_quad_cancel(bpy.types.Operator):
@@ -197,19 +215,31 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
     self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname)
 
 
-def problem_of(context: bpy.types.Context) -> str:
-    """Why the active object cannot be worked on now; empty where it can."""
-    obj = context.object
+def problem_of(context: bpy.types.Context, modes: Collection[str] = ("OBJECT",)) -> str:
+    """Why the active object cannot be worked on now; empty where it can, if it is in one of some modes."""
+    return object_problem(context.object, modes)
+
+
+def object_problem(obj: bpy.types.Object | None, modes: Collection[str] = ("OBJECT",)) -> str:
+    """:func:`problem_of`, of any object."""
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first"
-    if obj.mode != "OBJECT":
+    if obj.mode not in modes:
         return "Switch to Object Mode first"
     if obj.library is not None:
         return "This object is linked from another file; make it local first"
     return ""
 
 
-def _is_escape(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+def why_not_now() -> str:
+    """Why nothing can be remeshed now, whatever the object; empty where something can."""
+    run = background_run.current()
+    if run is not None:
+        return f'"{run.source.name}" is being remeshed: wait for it, or cancel it'
+    return "" if native.is_there() else "The compiled part is missing: install a release of the add-on"
+
+
+def is_escape(context: bpy.types.Context, event: bpy.types.Event) -> bool:
     """Whether Esc is pressed over a 3D view, where it means nothing else.
 
     Playback of an animation has the older claim.

@@ -17,12 +17,17 @@ from .check_operators import (
 from .edge_marks import BORDERS, SHARP, SOURCES
 from .guide_lines import LINE_TYPES
 from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
+from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
+from .repair_operators import OBJECT_OT_hybrid_quad_repair
 from .result_mesh import read_report
+from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
 from .transfer.kinds import KINDS
 
 
-class _HybridQuadPanel:
+class HybridQuadPanel:
+    """Where the add-on's panels are, and when they are there."""
+
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Hybrid Quad"
@@ -32,7 +37,7 @@ class _HybridQuadPanel:
         return context.object is not None and context.object.type == "MESH"
 
 
-class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
     """Size of the quads, where they go, and the button."""
 
     bl_label = "Hybrid Quad"
@@ -40,6 +45,10 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         return True  # with no mesh object, it says so
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        if super().poll(context):
+            VIEW3D_PT_hybrid_quad_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -56,15 +65,18 @@ class VIEW3D_PT_hybrid_quad(_HybridQuadPanel, bpy.types.Panel):
             layout.label(text="install a release of the add-on")
         settings = context.object.hybrid_quad
         column = layout.column()
+        column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length
         column.prop(settings, "target_mode")
         column.prop(settings, SIZE_SETTINGS[settings.target_mode])
         layout.prop(settings, "result_mode")
         button = layout.row()
         button.scale_y = 1.5
         button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
+        if sum(obj.type == "MESH" for obj in context.selected_objects) > 1:
+            layout.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
 
 
-class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_features(HybridQuadPanel, bpy.types.Panel):
     """Which edges stay edges."""
 
     bl_label = "Edges to Keep"
@@ -83,7 +95,7 @@ class VIEW3D_PT_hybrid_quad_features(_HybridQuadPanel, bpy.types.Panel):
         layout.column(heading="Marked").prop(settings, "use_marked_sharp", text="Sharp")
 
 
-class VIEW3D_PT_hybrid_quad_feature_sources(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_feature_sources(HybridQuadPanel, bpy.types.Panel):
     """Other marks, and borders, that make edges stay."""
 
     bl_label = "Features"
@@ -103,7 +115,7 @@ class VIEW3D_PT_hybrid_quad_feature_sources(_HybridQuadPanel, bpy.types.Panel):
                 column.prop(settings, source.setting, text=source.label)
 
 
-class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_guides(HybridQuadPanel, bpy.types.Panel):
     """What gives the quads their direction and density."""
 
     bl_label = "Guides"
@@ -115,9 +127,10 @@ class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.object.hybrid_quad
-        column = layout.column(heading="Attributes")
+        column = layout.column(heading="Painted")
         column.prop(settings, "use_guide_attribute", text="Direction")
         column.prop(settings, "use_density_attribute", text="Density")
+        column.prop(settings, "use_painted_lines", text="Lines")
         column = layout.column()
         column.prop(settings, "guide_object", text="Object")
         if settings.guide_object and settings.guide_object.type not in LINE_TYPES:
@@ -141,7 +154,7 @@ class VIEW3D_PT_hybrid_quad_guides(_HybridQuadPanel, bpy.types.Panel):
         layout.prop(settings, "guide_radius")
 
 
-class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
     """How quads adapt to the surface."""
 
     bl_label = "Flow"
@@ -163,7 +176,7 @@ class VIEW3D_PT_hybrid_quad_flow(_HybridQuadPanel, bpy.types.Panel):
         column.prop(settings, "fit_limit_surface")
 
 
-class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_symmetry(HybridQuadPanel, bpy.types.Panel):
     """Mirror planes."""
 
     bl_label = "Symmetry"
@@ -182,7 +195,7 @@ class VIEW3D_PT_hybrid_quad_symmetry(_HybridQuadPanel, bpy.types.Panel):
         row.prop(settings, "use_auto_symmetry", toggle=True)
 
 
-class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_transfer(HybridQuadPanel, bpy.types.Panel):
     """What the result takes along."""
 
     bl_label = "Transfer"
@@ -202,7 +215,7 @@ class VIEW3D_PT_hybrid_quad_transfer(_HybridQuadPanel, bpy.types.Panel):
         columns["Object"].active = settings.result_mode == "NEW"
 
 
-class VIEW3D_PT_hybrid_quad_limits(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_limits(HybridQuadPanel, bpy.types.Panel):
     """When a run is ended."""
 
     bl_label = "Limits"
@@ -218,7 +231,7 @@ class VIEW3D_PT_hybrid_quad_limits(_HybridQuadPanel, bpy.types.Panel):
         column.prop(context.object.hybrid_quad, "memory_limit")
 
 
-class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
     """What is wrong with the mesh."""
 
     bl_label = "Check"
@@ -233,14 +246,16 @@ class VIEW3D_PT_hybrid_quad_check(_HybridQuadPanel, bpy.types.Panel):
             layout.label(text="Nothing is wrong with it", icon="CHECKMARK")
         column = layout.column(align=True)
         for row in rows or ():
-            line = column.row()
+            line = column.split(factor=0.7)
             line.label(text=describe_row(row), icon="INFO" if row["repairable"] else "ERROR")
             if row["elements"]:
                 name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
-                line.operator(name, text="", icon=icon).code = row["code"]
+                line.operator(name, text="Select", icon=icon).code = row["code"]
+        if rows:
+            layout.operator(OBJECT_OT_hybrid_quad_repair.bl_idname, icon="MODIFIER")
 
 
-class VIEW3D_PT_hybrid_quad_report(_HybridQuadPanel, bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
     """What the latest run of the active object gave."""
 
     bl_label = "Last Result"

@@ -7,6 +7,7 @@ import math
 import bpy
 
 from ..core.options import AXES, MOST_QUADS, RemeshOptions
+from . import part_properties
 from .edge_marks import SOURCES
 from .transfer.kinds import KINDS
 
@@ -214,6 +215,11 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         description='Make quads smaller where the attribute "hybrid_quad_density" (float, points) is more than 1',
         default=True,
     )
+    use_painted_lines: bpy.props.BoolProperty(
+        name="Painted Lines",
+        description="Let quads follow or cross the loops and rings painted on this object (curve objects that are its children)",
+        default=True,
+    )
     adaptivity: bpy.props.FloatProperty(
         name="Adaptivity",
         description="Smaller quads where the surface bends more; 0: all of one size",
@@ -255,6 +261,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     transfer: bpy.props.PointerProperty(
         type=HybridQuadTransferSettings, name="Transfer", description="What the result takes along"
     )
+    part: bpy.props.PointerProperty(
+        type=part_properties.HybridQuadPartSettings, name="Region", description="Which faces are remeshed"
+    )
     result_mode: bpy.props.EnumProperty(
         name="Result", description="Where the quads go", items=RESULT_MODES, default="NEW"
     )
@@ -279,6 +288,10 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     last_report: bpy.props.StringProperty(
         name="Last Report", description="Report of the latest run as JSON", options={"HIDDEN"}
     )
+    source_name: bpy.props.StringProperty(
+        name="Made Of",
+        description="Object that these quads were made of: their subdivision surface is compared with it",
+    )
     last_check: bpy.props.StringProperty(
         name="Last Check", description="What the latest check found, as JSON", options={"HIDDEN"}
     )
@@ -291,4 +304,4 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         return "".join(letter for letter, is_used in zip(AXES, self.symmetry_axes, strict=True) if is_used)
 
 
-CLASSES = (HybridQuadTransferSettings, HybridQuadSettings)
+CLASSES = (HybridQuadTransferSettings, *part_properties.CLASSES, HybridQuadSettings)

@@ -11,9 +11,43 @@ try:
 except ImportError as error:
     raise ImportError("Hybrid Quad needs numpy in Blender's Python (Debian: apt install python3-numpy)") from error
 
-from . import background_run, check_operators, command, operators, panels, properties, run_display
+from . import (
+    background_run,
+    check_operators,
+    command,
+    operators,
+    panels,
+    part_panel,
+    presets,
+    properties,
+    repair_operators,
+    run_display,
+    selected_objects,
+)
+from .painting import registration as painting
+from .preview import limit, sessions
+from .preview import panels as preview_panels
+from .preview import settings as preview_settings
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *check_operators.CLASSES, *panels.CLASSES)
+CLASSES = (
+    *properties.CLASSES,
+    *preview_settings.CLASSES,
+    *operators.CLASSES,
+    *selected_objects.CLASSES,
+    *check_operators.CLASSES,
+    *repair_operators.CLASSES,
+    *presets.CLASSES,
+    *limit.CLASSES,
+    # Panels stand in the order in which they come here.
+    *panels.CLASSES[:1],
+    *preview_panels.CLASSES[:1],
+    *part_panel.CLASSES,
+    *panels.CLASSES[1:],
+    *preview_panels.CLASSES[1:],
+    *painting.CLASSES,
+)
+# Of the menu Object, in this order.
+MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
 
 
 def register() -> None:
@@ -24,19 +58,30 @@ def register() -> None:
     bpy.types.Object.hybrid_quad = bpy.props.PointerProperty(
         type=properties.HybridQuadSettings, name="Hybrid Quad", description="How this object is remeshed"
     )
+    bpy.types.WindowManager.hybrid_quad_preview = bpy.props.PointerProperty(
+        type=preview_settings.HybridQuadPreviewSettings, name="Hybrid Quad", description="What is drawn over objects"
+    )
+    sessions.register()
     run_display.register()
-    bpy.types.VIEW3D_MT_object.append(operators.draw_menu_entry)
+    painting.register()
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.append(entry)
     command.register()
 
 
 def unregister() -> None:
     """Safe to call where nothing is registered."""
     background_run.forget()
+    sessions.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
-    bpy.types.VIEW3D_MT_object.remove(operators.draw_menu_entry)
+    for entry in MENU_ENTRIES:
+        bpy.types.VIEW3D_MT_object.remove(entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
+    if hasattr(bpy.types.WindowManager, "hybrid_quad_preview"):
+        del bpy.types.WindowManager.hybrid_quad_preview
+    painting.unregister()
     run_display.unregister()
     for cls in reversed(CLASSES):
         with contextlib.suppress(RuntimeError):  # not registered

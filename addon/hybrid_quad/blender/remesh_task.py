@@ -14,10 +14,12 @@ from ..core.curve_counts import chains_of_edges
 from ..core.mesh_arrays import FloatArray, IntArray
 from ..core.options import RemeshOptions
 from ..core.remesh import RemeshResult
+from ..core.remesh_part import PartChoice
 from ..core.strokes import Stroke, strokes_of_segments
 from ..worker.request import RemeshRequest
 from . import edge_marks, guide_lines
 from .mesh_source import MeshSource, read_source
+from .part_source import choice_of, read_part_source
 from .transfer import kinds
 
 if TYPE_CHECKING:
@@ -48,6 +50,8 @@ class RemeshTask:
         How far strokes act, in edge lengths of the quads.
     use_guides, use_density : bool
         Whether what is painted on the source counts.
+    part : PartChoice or None
+        The faces to remesh, where these are not all; the source is then the object's own mesh.
     """
 
     source: MeshSource
@@ -57,6 +61,7 @@ class RemeshTask:
     stroke_radius: float = 2.0
     use_guides: bool = True
     use_density: bool = True
+    part: PartChoice | None = None
 
     @property
     def marked_edges(self) -> IntArray:
@@ -87,6 +92,7 @@ class RemeshTask:
             strokes=self.strokes,
             stroke_radius=self.stroke_radius,
             density=source.density if self.use_density else None,
+            part=self.part,
         )
 
     def solve(
@@ -112,8 +118,11 @@ def prepare_task(
     threads: int = 0,
     time_limit: float | None = None,
     memory_limit: float | None = None,
+    for_result: bool = True,
 ) -> RemeshTask:
     """What an object's settings ask of its mesh as it is now; a limit that is not given is the settings'.
+
+    Without `for_result`, the mesh is read as the viewport shows it, and nothing that a result would take along.
 
     Raises
     ------
@@ -135,7 +144,12 @@ def prepare_task(
         memory_limit=settings.memory_limit or None if memory_limit is None else memory_limit,
         **{name: getattr(settings, name) for name in _NUMBERS},
     )
-    source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=kinds.asked_by(settings))
+    part = choice_of(obj) if for_result else None
+    asked = kinds.asked_by(settings) if for_result else None
+    if part is None:
+        source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=asked)
+    else:
+        source = read_part_source(obj, depsgraph, asked)
     return RemeshTask(
         source,
         options,
@@ -144,6 +158,7 @@ def prepare_task(
         stroke_radius=settings.guide_radius,
         use_guides=settings.use_guide_attribute,
         use_density=settings.use_density_attribute,
+        part=part,
     )
 
 

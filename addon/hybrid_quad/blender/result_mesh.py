@@ -12,8 +12,10 @@ import numpy as np
 
 from ..core import report
 from ..core.errors import InternalError
+from ..core.part_weld import PartResult
 from ..core.remesh import CORNER, RemeshResult
-from . import edge_marks
+from . import edge_marks, result_features
+from .part_mesh import joined_mesh
 from .remesh_task import RemeshTask
 from .transfer import layers as transfer_layers
 from .transfer import object_data
@@ -54,6 +56,8 @@ def place_result(
     """
     placement = placement or Placement.of_settings(obj)
     mesh = build_mesh(obj, task, result)
+    if isinstance(result, PartResult):
+        mesh = _joined(obj, mesh, result)
     target = _replace_mesh(obj, mesh, task) if placement.in_place else _add_object(context, obj, mesh, task, placement)
     for each in {obj, target}:
         each.hybrid_quad.last_report = report.as_text(result.report)
@@ -92,6 +96,13 @@ def build_mesh(source: bpy.types.Object, task: RemeshTask, result: RemeshResult)
     return mesh
 
 
+def _joined(obj: bpy.types.Object, part_mesh: bpy.types.Mesh, result: PartResult) -> bpy.types.Mesh:
+    try:
+        return joined_mesh(obj, part_mesh, result)
+    finally:
+        bpy.data.meshes.remove(part_mesh)
+
+
 def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None:
     mesh, source = holder.data, task.source
     quads = result.quads[:, ::-1] if source.is_mirrored else result.quads
@@ -110,8 +121,10 @@ def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> N
         mesh.use_auto_smooth = bool(source.layers.faces.is_smooth.any())
         mesh.auto_smooth_angle = math.pi
     transfer_layers.write(holder, task, result)
+    corners = np.flatnonzero(result.vertex_kinds == CORNER)
+    result_features.write(mesh, result.feature_edges, corners)
     if task.options.fit_limit_surface:
-        edge_marks.crease(mesh, result.feature_edges, np.flatnonzero(result.vertex_kinds == CORNER))
+        edge_marks.crease(mesh, result.feature_edges, corners)
     if mesh.validate(clean_customdata=False):
         raise InternalError("Blender found the resulting mesh invalid", "validation")
     mesh.update()
@@ -125,6 +138,7 @@ def _add_object(
     result.name = f"{source.name} Quads"
     result.data = mesh
     mesh.name = result.name
+    result.hybrid_quad.source_name = source.name
     for collection in object_data.collections_for(context, source, layers):
         collection.objects.link(result)
     object_data.take_along(context, result, layers)
@@ -148,7 +162,8 @@ def _add_object(
 
 def _replace_mesh(obj: bpy.types.Object, mesh: bpy.types.Mesh, task: RemeshTask) -> bpy.types.Object:
     old = obj.data
-    object_data.keep_modifiers(obj, task.source.layers)
+    if task.part is None:
+        object_data.keep_modifiers(obj, task.source.layers)
     obj.data = mesh
     if old.users == 0 and old.library is None:
         name = old.name

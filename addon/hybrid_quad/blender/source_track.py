@@ -8,6 +8,8 @@ from typing import Any
 import bpy
 import numpy as np
 
+from .edit_mode import readable_mesh
+
 # How many numbers of what kind an element of an attribute has, and what they are called.
 _ATTRIBUTES = {
     "FLOAT": ("value", 1, np.float32),
@@ -41,13 +43,13 @@ class SourceTrack:
 
     def __init__(self, obj: bpy.types.Object) -> None:
         self.name: str = obj.name
-        self._identity = _identity(obj)
+        self._identity = identity(obj)
         self._mesh_name: str = obj.data.name
         self._state = _state(obj)
 
     def find(self) -> bpy.types.Object | None:
         """The object, even if it was renamed; None where it is in no scene any more."""
-        found = next((obj for obj in bpy.data.objects if _identity(obj) == self._identity), None)
+        found = next((obj for obj in bpy.data.objects if identity(obj) == self._identity), None)
         if not hasattr(bpy.types.ID, "session_uid") and (found is None or not self._has_a_name_of(found)):
             # Before Blender 4.2 only the place in memory tells objects apart. Undo moves them, but keeps their names.
             found = bpy.data.objects.get(self.name)
@@ -59,17 +61,32 @@ class SourceTrack:
         """Whether the object's mesh or modifiers are others than when the run began. Only in Object Mode."""
         return _state(obj) != self._state
 
+    def has_changed_mesh(self, obj: bpy.types.Object) -> bool:
+        """Whether the object's own mesh is another than when the run began, also in Edit Mode."""
+        with readable_mesh(obj) as mesh:
+            return _mesh_state(mesh) != self._state[0]
+
     def _has_a_name_of(self, obj: bpy.types.Object) -> bool:
         return obj.name == self.name or (obj.type == "MESH" and obj.data.name == self._mesh_name)
 
 
-def _identity(obj: bpy.types.Object) -> int:
+def identity(obj: bpy.types.Object) -> int:
+    """What tells an object from all others while the file is open; before Blender 4.2 undo may change it."""
     return int(obj.session_uid) if hasattr(obj, "session_uid") else int(obj.as_pointer())
 
 
-def _state(obj: bpy.types.Object) -> bytes:
-    """A digest of an object's mesh, without what is selected, and of its modifiers' settings."""
-    mesh, digest = obj.data, hashlib.blake2b()
+def _state(obj: bpy.types.Object) -> tuple[bytes, bytes]:
+    """Digests of an object's mesh, and of its modifiers' settings."""
+    digest = hashlib.blake2b()
+    for modifier in obj.modifiers:
+        digest.update(repr(_settings(modifier)).encode())
+    with readable_mesh(obj) as mesh:
+        return _mesh_state(mesh), digest.digest()
+
+
+def _mesh_state(mesh: bpy.types.Mesh) -> bytes:
+    """A digest of a mesh, without what is selected."""
+    digest = hashlib.blake2b()
     _add(digest, mesh.vertices, "co", 3, np.float32)
     _add(digest, mesh.edges, "vertices", 2, np.int32)
     _add(digest, mesh.loops, "vertex_index", 1, np.int32)
@@ -83,8 +100,6 @@ def _state(obj: bpy.types.Object) -> bytes:
         if attribute.data_type in _ATTRIBUTES and not attribute.name.startswith(_DISPLAY_ATTRIBUTES):
             digest.update(f"{attribute.name} {attribute.domain} {attribute.data_type}".encode())
             _add(digest, attribute.data, *_ATTRIBUTES[attribute.data_type])
-    for modifier in obj.modifiers:
-        digest.update(repr(_settings(modifier)).encode())
     return digest.digest()
 
 

@@ -14,11 +14,14 @@ from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_arrays import FloatArray
 from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
 from ..core.parent_process import end_with_stdin
+from ..core.part_files import write_polygons
 from ..core.remesh import RemeshResult, remesh_with_options
+from ..core.remesh_part import PartRemesh
 from ..core.strokes import KINDS, Stroke, joined_lines
 from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say
+from .part_arguments import add_part, joined_mesh, part_solver
 from .progress_bar import ProgressBar
 
 
@@ -150,6 +153,7 @@ def add_settings(parser: argparse._ActionsContainer) -> None:
         metavar="origin|bounds|X,Y,Z",
         help="where the mirror planes meet: the origin (default), the middle of the bounding box, or a point",
     )
+    add_part(parser)
     parser.add_argument(
         "--solver",
         choices=SOLVERS,
@@ -178,13 +182,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.picture and not picture.can_draw():
         raise UsageProblem("--picture needs Pillow: pip install 'hybrid-quad[pictures]'")
     try:
-        result = _remesh(arguments, options, started)
+        result, mesh = _remesh(arguments, options, started)
         if arguments.picture:
             picture.write_picture(arguments.picture, result.vertices, result.quads)
     except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:
         _write_failure(arguments, options, error)
         raise
-    _write(arguments, result)
+    _write(arguments, result, mesh)
     if not arguments.quiet:
         for defect in result.report["defects"]:
             say(f"repaired {describe_defect(defect)}")
@@ -243,19 +247,22 @@ def _center(text: str) -> str | tuple[float, float, float]:
     return x, y, z
 
 
-def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: float) -> RemeshResult:
+def _remesh(
+    arguments: argparse.Namespace, options: RemeshOptions, started: float
+) -> tuple[RemeshResult, PartRemesh | None]:
     vertices, polygons = mesh_io.read_mesh(arguments.input)
     sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
     curve_counts = None if arguments.curve_counts is None else mesh_io.read_counts(arguments.curve_counts)
     density = _numbers(arguments.density, 1, len(vertices))
     frames = _numbers(arguments.frames, 6, len(vertices))
+    solve, asked = part_solver(arguments, vertices, polygons, options) or (remesh_with_options, options)
     if options.time_limit is not None and time.monotonic() - started > options.time_limit:
         raise Cancelled("the time limit passed while the mesh was read", "time_limit")
     with ProgressBar(arguments.quiet) as bar:
-        result = remesh_with_options(
+        result = solve(
             vertices,
             polygons,
-            options,
+            asked,
             sharp_edges=sharp_edges,
             curve_counts=curve_counts,
             density=None if density is None else density.reshape(-1),
@@ -268,7 +275,7 @@ def _remesh(arguments: argparse.Namespace, options: RemeshOptions, started: floa
     problems = violations(result.vertices, result.quads)
     if problems:
         raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
-    return result
+    return result, joined_mesh(vertices, polygons, result)
 
 
 def _strokes(arguments: argparse.Namespace) -> list[Stroke]:
@@ -296,7 +303,7 @@ def _numbers(path: str | None, width: int, count: int) -> FloatArray | None:
     return rows
 
 
-def _write(arguments: argparse.Namespace, result: RemeshResult) -> None:
+def _write(arguments: argparse.Namespace, result: RemeshResult, mesh: PartRemesh | None) -> None:
     # The report first: where it cannot be written, no result must be left behind. From here on, a signal that comes
     # while the files are put in place would leave one of the two; it is held back for these few milliseconds.
     held = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -309,7 +316,10 @@ def _write(arguments: argparse.Namespace, result: RemeshResult) -> None:
         if arguments.report:
             with mesh_io.replacing(arguments.report) as file:
                 file.write(report.as_text(result.report).encode())
-        mesh_io.write_mesh(arguments.output, result.vertices, result.quads)
+        if mesh is None:
+            mesh_io.write_mesh(arguments.output, result.vertices, result.quads)
+        else:
+            write_polygons(arguments.output, mesh.vertices, mesh.faces)
     finally:
         for number, handler in held.items():
             signal.signal(number, handler)

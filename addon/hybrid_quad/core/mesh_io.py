@@ -136,7 +136,7 @@ def read_edges(path: str | os.PathLike[str]) -> IntArray:
     """
     path = Path(path)
     pairs = []
-    for number, line in enumerate(_read_text(path).splitlines(), 1):
+    for number, line in enumerate(read_text(path).splitlines(), 1):
         tokens = line.partition("#")[0].split()
         if not tokens:
             continue
@@ -158,7 +158,7 @@ def read_counts(path: str | os.PathLike[str]) -> list[tuple[list[int], int]]:
     """
     path = Path(path)
     counts = []
-    for number, line in enumerate(_read_text(path).splitlines(), 1):
+    for number, line in enumerate(read_text(path).splitlines(), 1):
         tokens = line.partition("#")[0].split()
         if not tokens:
             continue
@@ -180,7 +180,7 @@ def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
     path = Path(path)
     pairs: list[tuple[int, int]] = []
     latest = 0
-    for line in _read_text(path).splitlines() if path.suffix.lower() == ".obj" else ():
+    for line in read_text(path).splitlines() if path.suffix.lower() == ".obj" else ():
         latest += line.startswith(("v ", "v\t"))
         if line.startswith(("l ", "l\t")):
             try:
@@ -202,7 +202,7 @@ def read_rows(path: str | os.PathLike[str], width: int) -> FloatArray:
     """
     path = Path(path)
     rows = []
-    for number, line in enumerate(_read_text(path).splitlines(), 1):
+    for number, line in enumerate(read_text(path).splitlines(), 1):
         tokens = line.partition("#")[0].split()
         if not tokens:
             continue
@@ -228,7 +228,7 @@ def read_polylines(path: str | os.PathLike[str]) -> list[tuple[str, FloatArray]]
         If there is no line in the file, or a row of it is neither; names the row.
     """
     path = Path(path)
-    text = _read_text(path)
+    text = read_text(path)
     rows = [(number, line.partition("#")[0].split()) for number, line in enumerate(text.splitlines(), 1)]
     read = _polylines_of_obj if any(tokens[:1] == ["l"] for _, tokens in rows) else _polylines_of_text
     try:
@@ -297,7 +297,7 @@ def _umask() -> int:
     return mask
 
 
-def _read_text(path: Path) -> str:
+def read_text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError as error:
@@ -305,7 +305,7 @@ def _read_text(path: Path) -> str:
 
 
 def _read_obj(path: Path) -> tuple[FloatArray, Polygons]:
-    text = _read_text(path).replace("\\\r\n", " ").replace("\\\n", " ")
+    text = read_text(path).replace("\\\r\n", " ").replace("\\\n", " ")
     positions: list[str] = []
     sizes: list[int] = []
     corners: list[int] = []
@@ -351,7 +351,7 @@ def _as_int32(values: list[int]) -> IntArray:
 
 
 def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
-    lines = [tokens for line in _read_text(path).splitlines() if (tokens := line.partition("#")[0].split())]
+    lines = [tokens for line in read_text(path).splitlines() if (tokens := line.partition("#")[0].split())]
     if not lines or not lines[0][0].upper().endswith("OFF"):
         raise ValueError("no OFF header")
     if lines[0][0].upper() not in ("OFF", "COFF", "NOFF", "CNOFF", "STOFF"):

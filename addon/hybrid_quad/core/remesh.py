@@ -264,6 +264,40 @@ def remesh_with_options(
     """:func:`remesh`, with the settings in one value."""
     from .. import __version__
 
+    asked, center = native_arguments(
+        vertices,
+        faces,
+        options,
+        sharp_edges=sharp_edges,
+        curve_counts=curve_counts,
+        guides=guides,
+        strokes=strokes,
+        stroke_radius=stroke_radius,
+        density=density,
+        frames=frames,
+    )
+    snapshot = _snapshot_receiver(dump_stages, on_snapshot)
+    result = native.load().remesh(**asked, progress=progress, cancel=cancel, snapshot=snapshot)
+    if center is not None:
+        result["vertices"] += center
+    result["report"] = report.finished(result["report"], options, __version__)
+    return RemeshResult(**result)
+
+
+def native_arguments(
+    vertices: npt.ArrayLike,
+    faces: FacesLike,
+    options: RemeshOptions,
+    *,
+    sharp_edges: npt.ArrayLike | Iterable[Sequence[int]] | None,
+    curve_counts: Iterable[CurveCount] | None,
+    guides: npt.ArrayLike | None,
+    strokes: Iterable[Stroke | npt.ArrayLike] | None,
+    stroke_radius: float | None,
+    density: npt.ArrayLike | None,
+    frames: npt.ArrayLike | None,
+) -> tuple[dict[str, Any], FloatArray | None]:
+    """What the compiled part is asked, and what is to be added to the points that it gives, if anything."""
     points, polygons, marked = as_vertices(vertices), as_polygons(faces), as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
     lines = checked_strokes(strokes)
@@ -271,23 +305,17 @@ def remesh_with_options(
     wishes = native_wishes(guides, density, frames, len(points), len(polygons.sizes))
     _require_enough_length(points, polygons, options, wishes["density"])
     center = _symmetry_center(points, options)
-    result = native.load().remesh(
-        points if center is None else points - center,
-        polygons.sizes,
-        polygons.vertices,
-        sharp_edges=marked,
-        curve_counts=as_curve_counts(curve_counts),
+    asked = {
+        "vertices": points if center is None else points - center,
+        "face_sizes": polygons.sizes,
+        "face_vertices": polygons.vertices,
+        "sharp_edges": marked,
+        "curve_counts": as_curve_counts(curve_counts),
         **wishes,
         **native_strokes(lines, center),
-        progress=progress,
-        cancel=cancel,
-        snapshot=_snapshot_receiver(dump_stages, on_snapshot),
         **options.for_native(),
-    )
-    if center is not None:
-        result["vertices"] += center
-    result["report"] = report.finished(result["report"], options, __version__)
-    return RemeshResult(**result)
+    }
+    return asked, center
 
 
 def _with_directions(

@@ -38,6 +38,11 @@ class TriangleMesh(NamedTuple):
         normals: FloatArray = np.cross(b - a, c - a)
         return normals
 
+    def of_polygons(self, chosen: npt.NDArray[np.bool_]) -> TriangleMesh:
+        """The triangles of some of the polygons; numbers stay as they are."""
+        own = chosen[self.polygons]
+        return TriangleMesh(self.points, self.vertices[own], self.corners[own], self.polygons[own])
+
 
 class Places(NamedTuple):
     """Places in triangles.

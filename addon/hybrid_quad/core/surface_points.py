@@ -140,30 +140,48 @@ def pairs_within(
     points: FloatArray, others: FloatArray, radius: float
 ) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray]]:
     """All pairs of a point and an other one closer than `radius`: indices of both and their distance, in parts."""
-    low = others.min(axis=0)
-    cells = np.floor((others - low) / radius).astype(np.int64)
-    size = cells.max(axis=0) + 3  # a border of empty cells all around
-    keys = _cell_keys(cells, size)
-    order = np.argsort(keys, kind="stable")
-    keys = keys[order]
-    own = np.floor((points - low) / radius).astype(np.int64)
-    for shift in np.ndindex(3, 3):
-        # Three cells in a row along z are one range of keys.
-        cell = own + np.array([shift[0] - 1, shift[1] - 1, 0])
-        inside = ((cell >= -1) & (cell <= size - 2)).all(axis=1)
-        at = np.flatnonzero(inside)
-        middle = _cell_keys(cell[at], size)
-        first = np.searchsorted(keys, middle - 1, "left")
-        count = np.searchsorted(keys, middle + 1, "right") - first
-        ends = np.cumsum(count)
-        for begin, end in parts(ends, _PAIRS):
-            part = count[begin:end]
-            which = np.repeat(at[begin:end], part)
-            within = np.arange(len(which)) - np.repeat(np.cumsum(part) - part, part)
-            other = order[np.repeat(first[begin:end], part) + within]
-            distance = np.linalg.norm(points[which] - others[other], axis=1)
-            near = distance < radius
-            yield which[near], other[near], distance[near]
+    return PointGrid(others, radius).pairs(points)
+
+
+class PointGrid:
+    """Points sorted into cells as large as a radius, so that those within it of other points are found quickly.
+
+    Parameters
+    ----------
+    others : (n, 3) float64
+        At least one.
+    radius : float
+    """
+
+    def __init__(self, others: FloatArray, radius: float) -> None:
+        self._others, self._radius = others, radius
+        self._low = others.min(axis=0)
+        cells = np.floor((others - self._low) / radius).astype(np.int64)
+        self._size = cells.max(axis=0) + 3  # a border of empty cells all around
+        keys = _cell_keys(cells, self._size)
+        self._order = np.argsort(keys, kind="stable")
+        self._keys = keys[self._order]
+
+    def pairs(self, points: FloatArray) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray]]:
+        """All pairs of one of `points` and a point of the grid closer than the radius, as :func:`pairs_within` gives them."""
+        own = np.floor((points - self._low) / self._radius).astype(np.int64)
+        for shift in np.ndindex(3, 3):
+            # Three cells in a row along z are one range of keys.
+            cell = own + np.array([shift[0] - 1, shift[1] - 1, 0])
+            inside = ((cell >= -1) & (cell <= self._size - 2)).all(axis=1)
+            at = np.flatnonzero(inside)
+            middle = _cell_keys(cell[at], self._size)
+            first = np.searchsorted(self._keys, middle - 1, "left")
+            count = np.searchsorted(self._keys, middle + 1, "right") - first
+            ends = np.cumsum(count)
+            for begin, end in parts(ends, _PAIRS):
+                part = count[begin:end]
+                which = np.repeat(at[begin:end], part)
+                within = np.arange(len(which)) - np.repeat(np.cumsum(part) - part, part)
+                other = self._order[np.repeat(first[begin:end], part) + within]
+                distance = np.linalg.norm(points[which] - self._others[other], axis=1)
+                near = distance < self._radius
+                yield which[near], other[near], distance[near]
 
 
 def _cell_keys(cells: npt.NDArray[np.int64], size: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:

@@ -16,16 +16,17 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO, Generic, TypeVar
 
 from ..core.errors import Cancelled
-from ..core.remesh import RemeshResult
 from .bundle import load_fields
 from .death import WorkerDied
 from .interpreter import worker_command
+from .kinds import Request
 from .messages import Message, decode, error_of
-from .request import RemeshRequest
 from .run import REQUEST, RESULT
+
+Result = TypeVar("Result")
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -40,7 +41,65 @@ _LOG_SHOWN = 4000  # characters
 _FIRST_STAGE = "start"
 
 
-class WorkerRun:
+class WorkerSeat:
+    """A worker process that waits for a request: everything that it needs is loaded."""
+
+    def __init__(self, *, temporary_folder: str | None = None, command: Sequence[str] | None = None) -> None:
+        """Starts the process.
+
+        Parameters
+        ----------
+        temporary_folder : str, optional
+            Where the run's own folder is made, which is private and removed with the run; by default the system's.
+        command : sequence of str, optional
+            Program and arguments, by default :func:`.interpreter.worker_command`. The order's file is added.
+
+        Raises
+        ------
+        OSError
+            If files cannot be written or the program cannot be started.
+        """
+        self.folder = Path(tempfile.mkdtemp(prefix="hybrid_quad_", dir=temporary_folder))
+        try:
+            self.messages: BinaryIO = _created(self.folder / _MESSAGES)
+            self.process = _start(worker_command() if command is None else command, self.folder)
+        except BaseException:
+            shutil.rmtree(self.folder, ignore_errors=True)
+            raise
+
+    def is_there(self) -> bool:
+        """Whether the process runs."""
+        return self.process.poll() is None
+
+    def hand_over(self, request: Request[Any]) -> None:
+        """Gives the process its request.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written; the process is then gone.
+        """
+        try:
+            part = self.folder / f"part_{REQUEST}"
+            request.save(part)
+            part.replace(self.folder / REQUEST)
+        except BaseException:
+            self.leave()
+            raise
+
+    def leave(self) -> None:
+        """Makes sure that the process is gone, and its files with it."""
+        self.process.kill()
+        if self.process.stdin is not None:
+            self.process.stdin.close()
+        # One that the system holds back dies later, and is asked for when the next one is started.
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.process.wait(_LEAVING)
+        self.messages.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class WorkerRun(Generic[Result]):
     """Solves a request in another process.
 
     Attributes
@@ -54,17 +113,22 @@ class WorkerRun:
     """
 
     def __init__(
-        self, request: RemeshRequest, *, temporary_folder: str | None = None, command: Sequence[str] | None = None
+        self,
+        request: Request[Result],
+        *,
+        temporary_folder: str | None = None,
+        command: Sequence[str] | None = None,
+        seat: WorkerSeat | None = None,
     ) -> None:
-        """Writes the request and starts the process.
+        """Starts the process and writes the request.
 
         Parameters
         ----------
-        request : RemeshRequest
-        temporary_folder : str, optional
-            Where the run's own folder is made, which is private and removed with the run; by default the system's.
-        command : sequence of str, optional
-            Program and arguments, by default :func:`.interpreter.worker_command`. The order's file is added.
+        request : Request
+        temporary_folder, command : optional
+            See :class:`WorkerSeat`.
+        seat : WorkerSeat, optional
+            A process that waits already; it belongs to this run from now on.
 
         Raises
         ------
@@ -75,17 +139,13 @@ class WorkerRun:
         self.fraction = 0.0
         self.is_finished = False
         self._error: Exception | None = None
-        self._result: RemeshResult | None = None
-        self._limit = request.options.time_limit
+        self._result: Result | None = None
+        self._result_type = request.result_type
+        self._limit = request.time_limit
         self._began = self._news = time.monotonic()
-        self._folder = Path(tempfile.mkdtemp(prefix="hybrid_quad_", dir=temporary_folder))
-        try:
-            request.save(self._folder / REQUEST)
-            self._messages: BinaryIO = _created(self._folder / _MESSAGES)
-            self._process = _start(worker_command() if command is None else command, self._folder)
-        except BaseException:
-            shutil.rmtree(self._folder, ignore_errors=True)
-            raise
+        self._seat = seat or WorkerSeat(temporary_folder=temporary_folder, command=command)
+        self._process, self._messages, self._folder = self._seat.process, self._seat.messages, self._seat.folder
+        self._seat.hand_over(request)
 
     @property
     def has_result(self) -> bool:
@@ -133,7 +193,7 @@ class WorkerRun:
             time.sleep(_INTERVAL)
         return self.is_finished
 
-    def result(self) -> RemeshResult:
+    def result(self) -> Result:
         """The run's result; waits for it.
 
         Raises
@@ -180,7 +240,7 @@ class WorkerRun:
             self._end(error)
             return
         try:
-            self._result = RemeshResult(**load_fields(self._folder / RESULT))
+            self._result = self._result_type(**load_fields(self._folder / RESULT))
         except Exception as error:  # for example a disk that is full
             self._end(error)
         else:
@@ -190,14 +250,7 @@ class WorkerRun:
         """Makes sure that the process is gone, and its files with it."""
         self._error = error
         self.is_finished = True
-        self._process.kill()
-        if self._process.stdin is not None:
-            self._process.stdin.close()
-        # One that the system holds back dies later, and is asked for when the next one is started.
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(_LEAVING)
-        self._messages.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._seat.leave()
 
     def _end_of_log(self) -> str:
         return (self._folder / _LOG).read_text(errors="replace")[-_LOG_SHOWN:]

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Any, ClassVar
 
 from ..core.curve_counts import CurveCount
 from ..core.errors import InternalError
 from ..core.guide_values import guides_of_vertices
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.options import RemeshOptions
+from ..core.part_weld import PartResult
 from ..core.remesh import CancelCallback, ProgressCallback, RemeshResult, remesh_with_options, usual_length
+from ..core.remesh_part import PartChoice, remesh_part_with_options
 from ..core.strokes import Stroke, guides_from_strokes, stronger_of
 from ..core.validation import violations
-from .bundle import load_bundle, save_bundle
+from .bundle import Arrays, save_bundle
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -39,6 +42,8 @@ class RemeshRequest:
         How far strokes of kind ``"direction"`` act, in edge lengths of the quads.
     density : (n,) float64 or None
         2 for edges half as long.
+    part : PartChoice or None
+        The faces to remesh, where that is not all.
     """
 
     vertices: FloatArray
@@ -51,6 +56,19 @@ class RemeshRequest:
     strokes: tuple[Stroke, ...] = ()
     stroke_radius: float = 2.0
     density: FloatArray | None = None
+    part: PartChoice | None = None
+
+    kind: ClassVar[str] = "remesh"
+
+    @property
+    def result_type(self) -> type[RemeshResult]:
+        """The class of the result."""
+        return RemeshResult if self.part is None else PartResult
+
+    @property
+    def time_limit(self) -> float | None:
+        """Seconds after which the run stops."""
+        return self.options.time_limit
 
     def directions(self) -> FloatArray | None:
         """(n, 3) or (#F, 3) directions, given and drawn; None where there are none. Takes its time."""
@@ -73,6 +91,8 @@ class RemeshRequest:
         InputError, Cancelled, InternalError
             As :func:`hybrid_quad.remesh` does; ``InternalError`` also where the result is no valid quad mesh.
         """
+        if self.part is not None:
+            return self._solve_part(self.part, progress, cancel)
         result = remesh_with_options(
             self.vertices,
             self.polygons,
@@ -90,8 +110,32 @@ class RemeshRequest:
             raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
         return result
 
+    def _solve_part(
+        self, part: PartChoice, progress: ProgressCallback | None, cancel: CancelCallback | None
+    ) -> RemeshResult:
+        asked = part.options_for(self.vertices, self.polygons, self.options)
+        return remesh_part_with_options(
+            self.vertices,
+            self.polygons,
+            asked,
+            part=part.faces,
+            odd_border=part.odd_border,
+            sharp_edges=self.sharp_edges,
+            curve_counts=self.curve_counts,
+            guides=dataclasses.replace(self, options=asked).directions(),
+            strokes=[stroke for stroke in self.strokes if stroke.kind != "direction"],
+            density=self.density,
+            progress=progress,
+            cancel=cancel,
+        )
+
     def save(self, path: Path) -> None:
-        """Writes the request to a file for :func:`load_request`."""
+        """Writes the request to a file for :func:`.kinds.load_request`."""
+        arrays, values = self.as_bundle()
+        save_bundle(path, arrays, {"kind": self.kind, **values})
+
+    def as_bundle(self) -> tuple[Arrays, dict[str, Any]]:
+        """All of it as arrays and values for JSON; :meth:`of_bundle` is the way back."""
         arrays = {
             "vertices": self.vertices,
             "face_sizes": self.polygons.sizes,
@@ -99,6 +143,7 @@ class RemeshRequest:
             "sharp_edges": self.sharp_edges,
             "guides": self.guides,
             "density": self.density,
+            "part": None if self.part is None else self.part.faces,
             **{f"stroke_{index}": stroke.points for index, stroke in enumerate(self.strokes)},
         }
         values = {
@@ -107,28 +152,29 @@ class RemeshRequest:
             "guides_of_faces": self.guides_of_faces,
             "strokes": [[stroke.strength, stroke.kind] for stroke in self.strokes],
             "stroke_radius": self.stroke_radius,
+            "part": None if self.part is None else [self.part.odd_border, self.part.uses_border_length],
         }
-        save_bundle(path, {name: array for name, array in arrays.items() if array is not None}, values)
+        return {name: array for name, array in arrays.items() if array is not None}, values
 
-
-def load_request(path: Path) -> RemeshRequest:
-    """A request that :meth:`RemeshRequest.save` wrote, with the same bits."""
-    arrays, values = load_bundle(path)
-    options = values["options"]
-    if isinstance(options["symmetry_center"], list):
-        options["symmetry_center"] = tuple(options["symmetry_center"])
-    return RemeshRequest(
-        vertices=arrays["vertices"],
-        polygons=Polygons(arrays["face_sizes"], arrays["face_vertices"]),
-        options=RemeshOptions(**options),
-        sharp_edges=arrays["sharp_edges"],
-        curve_counts=[(path, count) for path, count in values["curve_counts"]],
-        guides=arrays.get("guides"),
-        guides_of_faces=values["guides_of_faces"],
-        strokes=tuple(
-            Stroke(arrays[f"stroke_{index}"], strength, kind)
-            for index, (strength, kind) in enumerate(values["strokes"])
-        ),
-        stroke_radius=values["stroke_radius"],
-        density=arrays.get("density"),
-    )
+    @classmethod
+    def of_bundle(cls, arrays: Arrays, values: dict[str, Any]) -> RemeshRequest:
+        """The request that :meth:`as_bundle` described, with the same bits."""
+        options = values["options"]
+        if isinstance(options["symmetry_center"], list):
+            options["symmetry_center"] = tuple(options["symmetry_center"])
+        return cls(
+            vertices=arrays["vertices"],
+            polygons=Polygons(arrays["face_sizes"], arrays["face_vertices"]),
+            options=RemeshOptions(**options),
+            sharp_edges=arrays["sharp_edges"],
+            curve_counts=[(path, count) for path, count in values["curve_counts"]],
+            guides=arrays.get("guides"),
+            guides_of_faces=values["guides_of_faces"],
+            strokes=tuple(
+                Stroke(arrays[f"stroke_{index}"], strength, kind)
+                for index, (strength, kind) in enumerate(values["strokes"])
+            ),
+            stroke_radius=values["stroke_radius"],
+            density=arrays.get("density"),
+            part=None if values["part"] is None else PartChoice(arrays["part"], *values["part"]),
+        )

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "hybrid_quad/improve/workpiece.h"
@@ -18,8 +20,14 @@ class FlawMeasure {
   bool is_flawed(int q) const {
     constexpr double kLeastArea = 1e-9;
     const std::array<Vector3, 4> p = corners(q);
+    if (q >= static_cast<int>(known_.size())) known_.resize(q + 1);
+    std::array<Known, 2>& known = known_[q];
+    if (known[0].corners == p) return known[0].is_flawed;
+    std::swap(known[0], known[1]);
+    if (known[0].corners == p) return known[0].is_flawed;
     const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    return !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, {enough_area_});
+    known[0] = {p, !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, {enough_area_})};
+    return known[0].is_flawed;
   }
 
   /// Minus the number of flawed ones; bad shapes together make a difference below kMostForShapes.
@@ -44,9 +52,16 @@ class FlawMeasure {
     return {p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
   }
 
+  /// Of a quad with its corners there: many trials in turn begin, and when they fail end, at the same quads.
+  struct Known {
+    std::array<Vector3, 4> corners{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    bool is_flawed = true;  ///< so it is where all corners are at the origin
+  };
+
   const Workpiece& piece_;
   const SurfaceIndex& whole_;
   double enough_area_;
+  mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
 };
 
 }  // namespace hybrid_quad

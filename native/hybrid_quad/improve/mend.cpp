@@ -1,6 +1,7 @@
 #include "hybrid_quad/improve/mend.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "hybrid_quad/improve/flaw_measure.h"
@@ -50,7 +51,7 @@ class Mender {
       std::sort(inside.begin(), inside.end());
       inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     }
-    Trial trial(piece_, smoother_, inside, measure_);
+    Trial trial(piece_, smoother_, inside, std::cref(measure_));
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (const int v : inside)
         if (piece_.mesh.is_free(v) && !piece_.mesh.is_pinned(v)) {
@@ -64,7 +65,7 @@ class Mender {
     const EditMesh::Quad around = piece_.mesh.quad(q);
     for (const int v : around) {
       search_.count_trial();
-      if (requadrangulate_around(piece_, smoother_, v, measure_, kFewer)) return true;
+      if (requadrangulate_around(piece_, smoother_, v, std::cref(measure_), kFewer)) return true;
     }
     return false;
   }
@@ -82,7 +83,7 @@ class Mender {
     const EditMesh::Quad seeds = piece_.mesh.quad(q);
     const std::vector<Sequence> sequences = search_.run({seeds.begin(), seeds.end()}, limits);
     for (const Sequence& sequence : sequences) {
-      Trial trial(piece_, smoother_, touched_by(piece_, sequence), measure_);
+      Trial trial(piece_, smoother_, touched_by(piece_, sequence), std::cref(measure_));
       make_sequence(piece_, sequence);
       if (keep(trial)) return true;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "hybrid_quad/improve/sequence_search.h"
@@ -164,7 +165,7 @@ class TakingOut {
 
   bool try_sequence(const Sequence& sequence, const std::vector<int>& touched, double gain) {
     const int removed = removed_by(sequence);
-    Trial trial(piece_, smoother_, touched, measure_);
+    Trial trial(piece_, smoother_, touched, std::cref(measure_));
     make_sequence(piece_, sequence);
     if (!trial.keep(std::numeric_limits<double>::infinity(), gain)) return false;
     quads_ -= removed;
@@ -245,7 +246,7 @@ class PuttingIn {
       const std::vector<int> touched = vertices_around(opening.vertex);
       if (std::any_of(touched.begin(), touched.end(), [&](int v) { return is_changed[v] != 0; })) continue;
       if (!history_.may_try(id, touched)) continue;
-      Trial trial(piece_, smoother_, touched, measure_);
+      Trial trial(piece_, smoother_, touched, std::cref(measure_));
       open_vertex(piece_, opening);
       if (!trial.keep(std::numeric_limits<double>::infinity(), gain)) {
         history_.fail(id);

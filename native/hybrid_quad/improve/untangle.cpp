@@ -94,7 +94,7 @@ std::vector<int> tangled_quads(const Workpiece& piece, int threads) {
 }
 
 int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr int kRounds = 4, kEffort = 3, kLeastEffort = 2000;
+  constexpr int kRounds = 4, kEffort = 1, kLeastEffort = 600;
   // Vertices to relax in all places together: where the whole mesh is bad, no place can be mended alone.
   int effort = kLeastEffort + kEffort * piece.mesh.vertex_count();
   std::vector<int> tangled = tangled_quads(piece, context.threads);

@@ -25,8 +25,16 @@ constexpr PassSettings kSettings[] = {{},
                                       {4.0, 1e-5, true},
                                       {3.2, 1e-4, true},
                                       {5.0, 1e-4, true}};
-/// So many flawed quads are not mended by another pass with as few.
-constexpr int kManyFlaws = 12;
+/// So many flawed quads are not mended by another pass with as few: only where there are far more is the surface nowhere thinner
+/// than quads are long. Those are taken out again afterwards.
+bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
+  constexpr int kFew = 5, kMany = 12;
+  constexpr double kManyOfAll = 0.01, kFarMore = 2.5;
+  const double flawed = best.flawed_quads;
+  if (flawed > kFew && flawed > kManyOfAll * static_cast<double>(best.mesh.quads.size())) return settings.quads_factor < kFarMore;
+  return flawed > kMany && !settings.as_needed;
+}
+
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
 /// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
 constexpr double kMostWork = 12;
@@ -43,19 +51,32 @@ bool has_inner_features(const ComponentPlan& plan) {
   return false;
 }
 
+struct Extractable {
+  ComponentPlan plan;
+  bool are_few = false;   ///< quads to be taken out afterwards
+  bool is_rough = false;  ///< it is a plan for more quads than there are to be
+};
+
+/// Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
+/// edges stay: fewer are to be asked for from the start.
+Extractable extractable_plan(const ComponentPlan& planned, double count) {
+  constexpr double kExtractable = 0.5;
+  const double least = kExtractable * quads_for_topology(planned.mesh);
+  Extractable out{planned, false, false};
+  out.are_few = planned.guides.empty() && count < least && planned.quads < least;
+  out.is_rough = out.are_few && !has_inner_features(planned);
+  if (out.is_rough) scale_plan(out.plan, least / planned.quads);
+  return out;
+}
+
 /// Passes until one has no flawed quads; the best of them.
 ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
                                  StageClock& clock, const RunContext& context) {
-  // Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
-  // edges stay: fewer are to be asked for from the start.
-  constexpr double kExtractable = 0.5;
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
-  const double least = kExtractable * quads_for_topology(planned.mesh);
-  const bool are_few = planned.guides.empty() && count < least && planned.quads < least;
-  const bool is_rough = are_few && !has_inner_features(planned);
-  ComponentPlan plan = planned;
-  if (is_rough) scale_plan(plan, least / planned.quads);
+  const Extractable extractable = extractable_plan(planned, count);
+  const bool are_few = extractable.are_few, is_rough = extractable.is_rough;
+  const ComponentPlan& plan = extractable.plan;
   ComponentResult best;
   std::string broken;
   bool any = false;
@@ -65,7 +86,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   for (PassSettings settings : kSettings) {
     settings.is_rough = is_rough;
     if (any && settings.as_needed && best.flawed_quads == 0) break;
-    if (any && !settings.as_needed && best.flawed_quads > kManyFlaws) continue;
+    if (any && is_hopeless(settings, best)) continue;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
     if (any && budget.left - settings.quads_factor * first_work < reserve) {
       best.gave_up = best.flawed_quads > 0;
@@ -103,6 +124,15 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
 }
 
 }  // namespace
+
+ComponentPreview preview_component(const ComponentPlan& planned, double wanted, bool with_quads, const SurfaceIndex& whole,
+                                   const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
+                                   StageClock& clock, const RunContext& context) {
+  const Extractable extractable = extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh)));
+  PassSettings settings;
+  settings.is_rough = extractable.is_rough;
+  return preview_pass(extractable.plan, with_quads, whole, wishes, guides, options, settings, clock, context);
+}
 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,

@@ -49,4 +49,16 @@ ComponentResult remesh_component(const ComponentPlan& plan, double wanted, const
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context);
 
+/// What a component's field says before anything is improved.
+struct ComponentPreview {
+  WorkingSurface surface;
+  FrameField frames;      ///< in quads: as they are extracted, or as they were asked for
+  ComponentResult quads;  ///< one try, not improved; no quads where they were not asked for
+};
+
+/// The first steps of remesh_component: to the field, or to the quads of one try.
+ComponentPreview preview_component(const ComponentPlan& plan, double wanted, bool with_quads, const SurfaceIndex& whole,
+                                   const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
+                                   StageClock& clock, const RunContext& context);
+
 }  // namespace hybrid_quad

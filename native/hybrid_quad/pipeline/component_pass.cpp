@@ -69,6 +69,20 @@ class ComponentRemesher {
     return std::move(result_);
   }
 
+  ComponentPreview preview(bool with_quads) {
+    prepare();
+    const FrameField unit = solve_field();
+    if (with_quads) {
+      Extraction quads = extract_by_any_means(unit, plan_.quads, plan_.quads);
+      finishing_.make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
+      quads.features = plan_.features;
+      take(std::move(quads));
+    } else {
+      sized_ = as_large_as_asked(unit);
+    }
+    return {std::move(surface_), std::move(sized_), std::move(result_)};
+  }
+
  private:
   void prepare() {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
@@ -201,6 +215,15 @@ class ComponentRemesher {
       }
     }
     return extract(unit, asked, wanted, Attempt::kPatchesOnly);
+  }
+
+  /// Without regard to what fits together, which is what takes its time.
+  FrameField as_large_as_asked(FrameField unit) const {
+    for (int f = 0; f < surface_.mesh.face_count(); ++f) {
+      unit.du[f] /= surface_.target_length[f];
+      unit.dv[f] /= surface_.target_length[f];
+    }
+    return unit;
   }
 
   /// Frames for a number of quads. Where that only scales them, they are solved for once.
@@ -337,6 +360,12 @@ class ComponentRemesher {
 ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
                          const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context) {
   return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).run();
+}
+
+ComponentPreview preview_pass(const ComponentPlan& plan, bool with_quads, const SurfaceIndex& whole, const Wishes& wishes,
+                              const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
+                              StageClock& clock, const RunContext& context) {
+  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).preview(with_quads);
 }
 
 }  // namespace hybrid_quad

@@ -224,6 +224,14 @@ DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex&
   return {tally.largest, tally.sum};
 }
 
+std::vector<double> point_distances(const std::vector<Vector3>& points, const SurfaceIndex& to, const RunContext& context) {
+  std::vector<double> out(points.size());
+  parallel_chunks(static_cast<int>(points.size()), context, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) out[i] = std::sqrt(to.nearest(points[i]).squared_distance);
+  });
+  return out;
+}
+
 double feature_distance(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                         const RunContext& context) {
   const double diagonal = input.diagonal();

@@ -78,6 +78,9 @@ struct DirectedDistance {
 DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex& to, const RunContext& context,
                                    int samples = 20000);
 
+/// #points: how far each is from a surface. The same for any number of threads.
+std::vector<double> point_distances(const std::vector<Vector3>& points, const SurfaceIndex& to, const RunContext& context);
+
 /// Largest distance from the input's feature curves to the quads' feature edges, in percent of the diagonal; 0 without
 /// feature curves, 100 where there are curves but no feature edges.
 double feature_distance(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,

@@ -20,7 +20,7 @@ class _Storage(NamedTuple):
     is_continuous: bool
 
 
-_STORAGES = {
+STORAGES = {
     "FLOAT": _Storage("value", np.float32, 1, True),
     "FLOAT_VECTOR": _Storage("vector", np.float32, 3, True),
     "FLOAT2": _Storage("vector", np.float32, 2, True),
@@ -35,6 +35,8 @@ _STORAGES = {
     "BOOLEAN": _Storage("value", np.bool_, 1, False),
     "STRING": _Storage("value", object, 1, False),
 }
+# What faces and edges consist of.
+TOPOLOGY = frozenset((".edge_verts", ".corner_vert", ".corner_edge"))
 _COLORS = ("FLOAT_COLOR", "BYTE_COLOR")
 # What Blender itself keeps in attributes, and what other files take along.
 _NOT_OURS = frozenset(
@@ -105,14 +107,14 @@ def read(mesh: bpy.types.Mesh, *, colors: bool, others: bool) -> MeshAttributes:
         and not (attribute.name in maps and attribute.domain == "CORNER")
         and (colors if _is_color(attribute) else others)
     ]
-    known = [attribute for attribute in asked if attribute.data_type in _STORAGES]
+    known = [attribute for attribute in asked if attribute.data_type in STORAGES]
     active, rendered = _color_names(mesh) if colors else ("", "")
     return MeshAttributes(
         tuple(MeshAttribute(each.name, each.data_type, each.domain, _values(each)) for each in known),
         buffers.read(mesh.edges, "vertices", np.int32, 2),
         active,
         rendered,
-        tuple(attribute.name for attribute in asked if attribute.data_type not in _STORAGES),
+        tuple(attribute.name for attribute in asked if attribute.data_type not in STORAGES),
     )
 
 
@@ -143,7 +145,7 @@ def write(mesh: bpy.types.Mesh, attributes: MeshAttributes, correspondence: Corr
 
 
 def _values_on_result(source: MeshAttribute, correspondence: Correspondence) -> Any:
-    surface, storage = correspondence.source, _STORAGES[source.data_type]
+    surface, storage = correspondence.source, STORAGES[source.data_type]
     if source.domain == "FACE":
         return source.values[correspondence.polygons]
     if source.domain == "POINT":
@@ -169,7 +171,7 @@ def _is_color(attribute: Any) -> bool:
 
 
 def _values(attribute: Any) -> Any:
-    storage = _STORAGES[attribute.data_type]
+    storage = STORAGES[attribute.data_type]
     if storage.dtype is object:
         values = np.empty(len(attribute.data), object)
         values[:] = [item.value for item in attribute.data]
@@ -178,7 +180,7 @@ def _values(attribute: Any) -> Any:
 
 
 def _set_values(attribute: Any, values: Any) -> None:
-    storage = _STORAGES[attribute.data_type]
+    storage = STORAGES[attribute.data_type]
     if storage.dtype is object:
         for item, value in zip(attribute.data, values, strict=True):
             item.value = value

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...core.mesh_arrays import FloatArray
+from ...core.part_weld import PartResult
 from ...core.remesh import RemeshResult
 from ...core.surface_places import TriangleMesh
 from .. import edge_marks
@@ -109,7 +110,10 @@ def write(obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None
     layers, mesh = task.source.layers, obj.data
     assert layers is not None
     quads = result.quads[:, ::-1] if task.source.is_mirrored else result.quads
-    correspondence = Correspondence(layers.triangles, result.vertices, quads)
+    triangles = layers.triangles
+    if isinstance(result, PartResult):  # new faces have what those had that they replace, and nothing of the rest
+        triangles = triangles.of_polygons(result.part)
+    correspondence = Correspondence(triangles, result.vertices, quads)
     if layers.mask is not None:
         mask.write(mesh, layers.mask, correspondence)
     vertex_weights.write(mesh, layers.vertex_marks, correspondence)

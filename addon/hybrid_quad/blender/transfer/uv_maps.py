@@ -46,7 +46,7 @@ def write(mesh: bpy.types.Mesh, maps: tuple[UvMap, ...], correspondence: Corresp
         places = correspondence.corners(walls_of(source, correspondence))
         values = places.values(correspondence.source.corners, source.places, is_extended=True)
         layer = mesh.uv_layers.new(name=source.name, do_init=False)
-        buffers.write(*_items(layer), values.astype(np.float32))
+        buffers.write(*items_of(layer), values.astype(np.float32))
     for source in maps:
         layer = mesh.uv_layers[source.name]
         layer.active_render = layer.active_render or source.is_rendered
@@ -61,10 +61,11 @@ def walls_of(source: UvMap, correspondence: Correspondence) -> BoolArray:
 
 def places_of(layer: Any) -> FloatArray:
     """(C, 2) places of the face corners in a UV layer of a mesh."""
-    items, name = _items(layer)
+    items, name = items_of(layer)
     places: FloatArray = buffers.read(items, name, np.float32, 2).astype(np.float64)
     return places
 
 
-def _items(layer: Any) -> tuple[Any, str]:
+def items_of(layer: Any) -> tuple[Any, str]:
+    """The items of a UV layer, and what their place is called."""
     return (layer.uv, "vector") if hasattr(layer, "uv") else (layer.data, "uv")  # before Blender 3.5

@@ -1,0 +1,35 @@
+"""What happens to meshes whose owners are in Edit Mode, where these can't be exchanged or read in full."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+import bpy
+
+
+@contextlib.contextmanager
+def out_of_edit_mode(obj: bpy.types.Object) -> Iterator[None]:
+    """Leaves Edit Mode for a while if an object is in it; the object that is active then is in it afterwards."""
+    if obj.mode != "EDIT":
+        yield
+        return
+    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        bpy.ops.object.mode_set(mode="EDIT")
+
+
+@contextlib.contextmanager
+def readable_mesh(obj: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """An object's mesh as it is, with all attributes: in Edit Mode, for a while, a copy of it."""
+    if obj.mode != "EDIT":
+        yield obj.data
+        return
+    obj.update_from_editmode()
+    mesh = obj.data.copy()
+    try:
+        yield mesh
+    finally:
+        bpy.data.meshes.remove(mesh)

@@ -1,0 +1,1 @@
+"""The tool that paints guides, in Object and Sculpt Mode: settings, operators, storage, drawing."""

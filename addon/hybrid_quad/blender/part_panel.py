@@ -1,0 +1,39 @@
+"""The panel that says which part of a mesh is remeshed."""
+
+from __future__ import annotations
+
+import bpy
+
+from .panels import HybridQuadPanel
+from .part_source import knows_face_sets
+
+
+class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
+    """Which faces are remeshed."""
+
+    bl_label = "Region"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.hybrid_quad.part
+        column = layout.column()
+        column.prop(settings, "region", text="Faces")
+        if settings.region == "WHOLE":
+            return
+        if settings.region == "FACE_SET":
+            column.prop(settings, "face_set", text="Number")
+            if not knows_face_sets():
+                column.label(text="Add-ons see face sets from Blender 3.5 on", icon="ERROR")
+        elif settings.region == "ATTRIBUTE":
+            column.prop_search(settings, "attribute", context.object.data, "attributes", text="Name")
+        column.prop(settings, "use_inverted")
+        column = layout.column()
+        column.prop(settings, "use_border_length")
+        column.prop(settings, "odd_border", text="If Odd")
+
+
+CLASSES = (VIEW3D_PT_hybrid_quad_part,)

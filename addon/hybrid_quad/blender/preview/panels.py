@@ -1,0 +1,111 @@
+"""The panels "Preview" and "Subdivision Preview" of the sidebar."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from ..panels import HybridQuadPanel
+from . import sessions
+from .limit import OBJECT_OT_hybrid_quad_apply_subdivision
+from .session import Session
+
+
+class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
+    """What remeshing would follow."""
+
+    bl_label = "Preview"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, _context: bpy.types.Context) -> None:
+        self.layout.prop(sessions.settings(), "show_field", text="")
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        asked = sessions.settings()
+        layout.active = asked.show_field
+        column = layout.column(heading="Show")
+        column.prop(asked, "show_crosses")
+        size = column.column()
+        size.active = asked.show_crosses
+        size.prop(asked, "show_sizes")
+        for name in ("singularities", "features", "guides", "quads"):
+            column.prop(asked, f"show_{name}")
+        if not asked.show_field:
+            return
+        _draw_state(layout, sessions.field.session)
+        found = sessions.field.session.result
+        if found is None:
+            return
+        rows = layout.column(align=True)
+        for quarters, count in sessions.field.counts():
+            icon = "SPHERE" if quarters > 0 else "CUBE"
+            rows.label(text=f"{count:,} x {quarters:+d}/4: {4 - quarters} quads", icon=icon)
+        if not len(found.singular_quarters):
+            rows.label(text="No singularities", icon="CHECKMARK")
+        rows.label(text=f"About {found.report['wanted_quads']:,.0f} quads")
+        for warning in found.report["warnings"]:
+            rows.label(text=warning, icon="ERROR")
+
+
+class VIEW3D_PT_hybrid_quad_limit(HybridQuadPanel, bpy.types.Panel):
+    """The limit surface of a result."""
+
+    bl_label = "Subdivision Preview"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, _context: bpy.types.Context) -> None:
+        self.layout.prop(sessions.settings(), "show_limit", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        asked = sessions.settings()
+        column = layout.column()
+        column.active = asked.show_limit
+        column.prop_search(context.object.hybrid_quad, "source_name", bpy.data, "objects", text="Source")
+        column.prop(asked, "limit_levels")
+        if asked.show_limit:
+            _draw_state(layout, sessions.limit.session)
+            _draw_distance(layout)
+        name = OBJECT_OT_hybrid_quad_apply_subdivision.bl_idname
+        operator = layout.operator(name, text="Apply as Modifier", icon="MOD_SUBSURF")
+        operator.levels = asked.limit_levels
+
+
+def _draw_state(layout: Any, session: Session[Any]) -> None:
+    if session.error:
+        layout.label(text=session.error, icon="ERROR")
+    elif session.status == "Waiting" and bpy.context.mode.startswith("EDIT"):
+        layout.label(text="Leave Edit Mode to see the change", icon="INFO")
+    elif session.is_busy:
+        layout.label(text=session.status, icon="SORTTIME")
+
+
+def _draw_distance(layout: Any) -> None:
+    distance = sessions.limit.distance
+    if sessions.limit.session.result is None:
+        return
+    if distance is None:
+        layout.label(text="Name the object that the quads were made of", icon="INFO")
+        return
+    rows = layout.column(align=True)
+    for name, value in (
+        ("Largest (red)", f"{distance.largest:.4g}"),
+        ("Of the diagonal", f"{distance.percent:.3f} %"),
+        ("Mean", f"{distance.mean:.4g}"),
+    ):
+        row = rows.row()
+        row.label(text=name)
+        right = row.row()
+        right.alignment = "RIGHT"
+        right.label(text=value)
+
+
+CLASSES = (VIEW3D_PT_hybrid_quad_preview, VIEW3D_PT_hybrid_quad_limit)
