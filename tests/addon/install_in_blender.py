@@ -24,10 +24,10 @@ class Registered:
     def __init__(self) -> None:
         self.timers: set = set()
         self.drawings: set = set()
-        spaces = [kind for kind in vars(bpy.types).values() if hasattr(kind, "draw_handler_add")]
-        spaces += [getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("Space")]
-        for space in {kind for kind in spaces if hasattr(kind, "draw_handler_add")}:
-            self._watch_drawings(space)
+        for name in dir(bpy.types):
+            if name.startswith("Space") and name != "Space" and hasattr(getattr(bpy.types, name), "draw_handler_add"):
+                self._watch_drawings(getattr(bpy.types, name))
+        assert bpy.types.SpaceView3D.draw_handler_add.__qualname__.startswith("Registered")
         self._watch_timers()
 
     def _watch_drawings(self, space) -> None:
@@ -76,12 +76,21 @@ def state(registered: Registered) -> dict[str, list[str]]:
         f"{name}: {function.__module__}"
         for name in dir(bpy.types)
         for function in getattr(getattr(getattr(bpy.types, name), "draw", None), "_draw_funcs", ())
-        if not function.__module__.startswith("bl_ui.")  # Blender's own stays in a list that it makes for the first entry
+        if not function.__module__.startswith(
+            "bl_ui."
+        )  # Blender's own stays in a list that it makes for the first entry
     ]
     properties = [
         f"{name}.{prop}"
         for name in dir(bpy.types)
         for prop in getattr(getattr(getattr(bpy.types, name), "bl_rna", None), "properties", {}).keys()  # noqa: SIM118
+    ]
+    toolbars = [bpy.types.VIEW3D_PT_tools_active, bpy.types.IMAGE_PT_tools_active]
+    tools = [
+        f"{toolbar.__name__} {mode}: {getattr(tool, 'idname', tool)}"
+        for toolbar in toolbars
+        for mode, entries in toolbar.tools_all()
+        for tool in toolbar._tools_flatten(entries)
     ]
     operators = [f"{space}.{name}" for space in dir(bpy.ops) for name in dir(getattr(bpy.ops, space))]
     return {
@@ -91,6 +100,7 @@ def state(registered: Registered) -> dict[str, list[str]]:
         "keymaps": sorted(keymaps),
         "handlers": sorted(handlers),
         "menus": sorted(menus),
+        "tools": sorted(tools),
         "timers and drawings": registered.left(),
     }
 
