@@ -80,7 +80,7 @@ def modules(wheels: list[Path]) -> dict[str, bytes]:
                 file = name.rpartition("/")[2]
                 if name.startswith("hybrid_quad_native/_native."):
                     content[file] = archive.read(name)
-                elif ".dist-info/licenses/" in name:
+                elif file and ".dist-info/licenses/" in name:
                     content[f"licenses/{file}"] = archive.read(name)
     return content
 
