@@ -236,7 +236,7 @@ def why_not_now() -> str:
     run = background_run.current()
     if run is not None:
         return f'"{run.source.name}" is being remeshed: wait for it, or cancel it'
-    return "" if native.is_there() else "The compiled part is missing: install a release of the add-on"
+    return "" if native.is_there() else "The compiled part is missing: install the zip for this Blender and system"
 
 
 def is_escape(context: bpy.types.Context, event: bpy.types.Event) -> bool:

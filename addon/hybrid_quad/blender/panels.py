@@ -62,7 +62,7 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
             return
         if not native.is_there():
             layout.label(text="The compiled part is missing:", icon="ERROR")
-            layout.label(text="install a release of the add-on")
+            layout.label(text="install the zip for this Blender and system")
         settings = context.object.hybrid_quad
         column = layout.column()
         column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length

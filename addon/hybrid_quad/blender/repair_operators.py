@@ -22,7 +22,7 @@ class OBJECT_OT_hybrid_quad_repair(ActiveMeshOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not native.is_there():
-            cls.poll_message_set("The compiled part is missing: install a release of the add-on")
+            cls.poll_message_set("The compiled part is missing: install the zip for this Blender and system")
             return False
         return super().poll(context)
 
