@@ -38,11 +38,12 @@ def shapes_of_field():
 
 @pytest.fixture(autouse=True)
 def leaves_nothing():
+    handlers = list(bpy.app.handlers.depsgraph_update_post)
     yield
     show(show_field=False, show_limit=False, show_quads=False)
     assert not drawing.is_on()
     assert not sessions.field.session.is_busy
-    assert not [each for each in bpy.app.handlers.depsgraph_update_post if "hybrid_quad" in each.__module__]
+    assert list(bpy.app.handlers.depsgraph_update_post) == handlers
 
 
 def test_the_field_of_a_sphere_has_eight_singularities_on_its_surface():

@@ -36,7 +36,7 @@ double crossing(const Vector3& a, const Vector3& b, const Vector3& p, const Vect
 
 StrokeInserter::StrokeInserter(const TriangleMesh& mesh, const SurfaceIndex& index,
                                const std::vector<std::array<int, 2>>& marked_edges)
-    : given_(mesh), index_(index), mesh_(mesh, {}, all_faces(mesh)) {
+    : index_(index), mesh_(mesh, {}, all_faces(mesh)) {
   for (std::size_t i = 0; i < marked_edges.size(); ++i)
     owners_[sorted_pair(marked_edges[i][0], marked_edges[i][1])] = {-1 - static_cast<int>(i)};
 }

@@ -51,7 +51,6 @@ class StrokeInserter {
   bool has_corner(int f, int v) const;
   double depth_in(int f, const Vector3& p, int* shallowest = nullptr) const;
 
-  const TriangleMesh& given_;
   const SurfaceIndex& index_;
   EditableMesh mesh_;                           // regions: faces of the given mesh
   std::map<int, std::vector<int>> parts_;       // of the faces that were split

@@ -22,7 +22,6 @@ class Restoration {
   bool give_up_around(const QuadMesh& improved, const std::vector<int>& flawed);
 
  private:
-  const QuadMesh& extracted_;
   std::vector<Vector3> centre_;
   std::vector<double> reach_;        // how far a quad extends from its centre
   std::vector<char> locked_, flawed_;
