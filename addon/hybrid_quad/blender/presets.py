@@ -14,7 +14,16 @@ SUBDIR = "hybrid_quad"
 SHIPPED = Path(__file__).with_name("shipped_presets")
 
 # What belongs to one object, not to a kind of objects.
-_OF_OBJECT = {"rna_type", "name", "guide_object", "guide_collection", "last_report", "last_check", "source_name", "part"}
+_OF_OBJECT = {
+    "rna_type",
+    "name",
+    "guide_object",
+    "guide_collection",
+    "last_report",
+    "last_check",
+    "source_name",
+    "part",
+}
 
 
 class OBJECT_OT_hybrid_quad_preset_add(AddPresetBase, bpy.types.Operator):

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .edge_borders import BoolArray, edge_keys, following_corners
+from .graph_components import component_labels
 from .mesh_arrays import Polygons
 
 
@@ -30,12 +31,6 @@ def fans_of_corners(polygons: Polygons, is_cut: BoolArray) -> npt.NDArray[np.int
     alike = polygons.vertices[begin[:, 0]] == polygons.vertices[begin[:, 1]]
     one = np.concatenate([begin[:, 0], end[:, 0]])
     other = np.concatenate([np.where(alike, begin[:, 1], end[:, 1]), np.where(alike, end[:, 1], begin[:, 1])])
-    names = np.arange(len(polygons.vertices))
-    while True:  # as often as there are corners in a fan
-        least = np.minimum(names[one], names[other])
-        if (names[one] == least).all() and (names[other] == least).all():
-            break
-        np.minimum.at(names, one, least)
-        np.minimum.at(names, other, least)
+    names = component_labels(len(polygons.vertices), one, other)
     fans: npt.NDArray[np.int64] = np.unique(names, return_inverse=True)[1].reshape(-1).astype(np.int64)
     return fans

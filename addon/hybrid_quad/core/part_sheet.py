@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .corner_fans import fans_of_corners
 from .edge_borders import BoolArray, edge_keys, following_corners
 from .errors import InputError
+from .graph_components import component_labels
 from .mesh_arrays import FloatArray, Polygons
 
 Indices = npt.NDArray[np.int64]
@@ -169,18 +170,7 @@ def _components(polygons: Polygons, vertex_count: int) -> Indices:
     order = np.argsort(keys, kind="stable")
     same = keys[order][1:] == keys[order][:-1]
     one, other = owner[order][:-1][same], owner[order][1:][same]
-    label = np.arange(len(polygons.sizes), dtype=np.int64)
-    while True:
-        least = np.minimum(label[one], label[other])
-        updated = label.copy()
-        np.minimum.at(updated, one, least)
-        np.minimum.at(updated, other, least)
-        np.minimum.at(updated, label[one], least)
-        np.minimum.at(updated, label[other], least)
-        updated = updated[updated]
-        if np.array_equal(updated, label):
-            return label
-        label = updated
+    return component_labels(len(polygons.sizes), one, other)
 
 
 def border_length(points: FloatArray, sheet: PartSheet) -> float:

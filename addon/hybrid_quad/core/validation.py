@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .graph_components import component_labels
 from .mesh_arrays import FacesLike, FloatArray, as_polygons, as_vertices
 
 IndexArray = npt.NDArray[np.int64]
@@ -87,7 +88,7 @@ def topology(faces: FacesLike) -> Topology:
     target = origin[following]
     pairs = np.sort(np.stack([origin, target], axis=1), axis=1)
     edges, count = np.unique(pairs, axis=0, return_counts=True)
-    label = _labels(len(used), edges[:, 0], edges[:, 1])
+    label = component_labels(len(used), edges[:, 0], edges[:, 1])
     roots = np.unique(label)
     euler = (
         np.bincount(np.searchsorted(roots, label), minlength=len(roots))
@@ -95,7 +96,7 @@ def topology(faces: FacesLike) -> Topology:
         + np.bincount(np.searchsorted(roots, label[origin[starts]]), minlength=len(roots))
     )
     rim = edges[count == 1]
-    rim_label = _labels(len(used), rim[:, 0], rim[:, 1])
+    rim_label = component_labels(len(used), rim[:, 0], rim[:, 1])
     return Topology(tuple(sorted(int(value) for value in euler)), len(np.unique(rim_label[np.unique(rim)])))
 
 
@@ -149,7 +150,7 @@ def _check_connectivity(found: list[str], darts: _Darts) -> None:
     on_boundary[darts.origin[rim]] = True
     on_boundary[darts.target[rim]] = True
     # Corner c sits at the origin of dart c. Across an edge, the corner at each end meets that of the other face.
-    label = _labels(
+    label = component_labels(
         len(darts.origin),
         np.concatenate([first, _next(first)]),
         np.concatenate([_next(second), second]),
@@ -167,22 +168,6 @@ def _check_connectivity(found: list[str], darts: _Darts) -> None:
 def _next(darts: IndexArray) -> IndexArray:
     following: IndexArray = (darts & ~np.int64(3)) | ((darts + 1) & 3)
     return following
-
-
-def _labels(count: int, first: IndexArray, second: IndexArray) -> IndexArray:
-    """The smallest member of each node's component in the graph of the edges (first, second)."""
-    label = np.arange(count)
-    while True:
-        smallest = np.minimum(label[first], label[second])
-        updated = label.copy()
-        np.minimum.at(updated, first, smallest)
-        np.minimum.at(updated, second, smallest)
-        np.minimum.at(updated, label[first], smallest)
-        np.minimum.at(updated, label[second], smallest)
-        updated = updated[updated]
-        if np.array_equal(updated, label):
-            return label
-        label = updated
 
 
 def _without_area(points: FloatArray, faces: IndexArray) -> npt.NDArray[np.bool_]:

@@ -2,14 +2,14 @@
 
 #include <opensubdiv/far/stencilTable.h>
 #include <opensubdiv/far/stencilTableFactory.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
+#include <opensubdiv/sdc/crease.h>
 
 #include <cstdint>
 #include <memory>
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/base/interruptible.h"
+#include "hybrid_quad/subdivision/catmull_clark_refiner.h"
 
 namespace hybrid_quad {
 
@@ -20,23 +20,28 @@ namespace Sdc = OpenSubdiv::Sdc;
 using Stencils = Far::LimitStencilTableReal<double>;
 using StencilFactory = Far::LimitStencilTableFactoryReal<double>;
 
+ControlMesh control_mesh(const QuadMesh& mesh) {
+  ControlMesh control;
+  control.vertex_count = static_cast<int>(mesh.positions.size());
+  control.face_sizes.assign(mesh.quads.size(), 4);
+  for (const auto& quad : mesh.quads) control.face_vertices.insert(control.face_vertices.end(), quad.begin(), quad.end());
+  for (const QuadMesh::FeatureEdge& e : mesh.feature_edges)
+    control.crease_vertices.insert(control.crease_vertices.end(), {e.a, e.b});
+  for (int i = 0; i < control.vertex_count; ++i)
+    if (mesh.kind[i] == VertexKind::kCorner) control.sharp_vertices.push_back(i);
+  control.crease_sharpness.assign(mesh.feature_edges.size(), Sdc::Crease::SHARPNESS_INFINITE);
+  control.vertex_sharpness.assign(control.sharp_vertices.size(), Sdc::Crease::SHARPNESS_INFINITE);
+  return control;
+}
+
 /// Owns all that OpenSubdiv reads, since its work may outlive a cancelled run.
 struct LimitTask {
-  int vertex_count = 0;
-  std::vector<int> sizes, corners, creases, sharp_vertices;
-  std::vector<float> crease_weights, vertex_weights;
+  ControlMesh control;
   std::vector<double> u, v;
   StencilFactory::LocationArrayVec locations;
   std::unique_ptr<const Stencils> stencils;
 
-  LimitTask(const QuadMesh& mesh, const std::vector<LimitPlace>& places)
-      : vertex_count(static_cast<int>(mesh.positions.size())), sizes(mesh.quads.size(), 4) {
-    for (const auto& quad : mesh.quads) corners.insert(corners.end(), quad.begin(), quad.end());
-    for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) creases.insert(creases.end(), {e.a, e.b});
-    for (int i = 0; i < vertex_count; ++i)
-      if (mesh.kind[i] == VertexKind::kCorner) sharp_vertices.push_back(i);
-    crease_weights.assign(mesh.feature_edges.size(), Sdc::Crease::SHARPNESS_INFINITE);
-    vertex_weights.assign(sharp_vertices.size(), Sdc::Crease::SHARPNESS_INFINITE);
+  LimitTask(const QuadMesh& mesh, const std::vector<LimitPlace>& places) : control(control_mesh(mesh)) {
     for (const LimitPlace& place : places) {
       u.push_back(place.u);
       v.push_back(place.v);
@@ -54,22 +59,7 @@ struct LimitTask {
 
   void run() {
     constexpr int kIsolation = 3;  // a patch beside an irregular vertex is an eighth of a quad, and fits it there
-    Far::TopologyDescriptor topology;
-    topology.numVertices = vertex_count;
-    topology.numFaces = static_cast<int>(sizes.size());
-    topology.numVertsPerFace = sizes.data();
-    topology.vertIndicesPerFace = corners.data();
-    topology.numCreases = static_cast<int>(crease_weights.size());
-    topology.creaseVertexIndexPairs = creases.data();
-    topology.creaseWeights = crease_weights.data();
-    topology.numCorners = static_cast<int>(sharp_vertices.size());
-    topology.cornerVertexIndices = sharp_vertices.data();
-    topology.cornerWeights = vertex_weights.data();
-    Sdc::Options scheme;
-    scheme.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    const std::unique_ptr<Far::TopologyRefiner> refiner(
-        Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, scheme)));
+    const std::unique_ptr<Far::TopologyRefiner> refiner = catmull_clark_refiner(control);
     if (!refiner) return;
     Far::TopologyRefiner::AdaptiveOptions adaptive(kIsolation);
     adaptive.useInfSharpPatch = true;
@@ -104,7 +94,7 @@ SparseMatrix limit_weights(const QuadMesh& mesh, const std::vector<LimitPlace>& 
     for (int k = 0; k < stencil.GetSize(); ++k)
       entries.emplace_back(row, stencil.GetVertexIndices()[k], stencil.GetWeights()[k]);
   }
-  SparseMatrix weights(rows, task->vertex_count);
+  SparseMatrix weights(rows, task->control.vertex_count);
   weights.setFromTriplets(entries.begin(), entries.end());
   return weights;
 }

@@ -123,6 +123,33 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   return best;
 }
 
+/// Further passes with corners where the loops of `best` are farthest from their guides; one that has them nearer and is as
+/// sound takes its place.
+void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
+                const HardGuides& guides, const RemeshOptions& options, ComponentResult& best, WorkBudget& budget,
+                StageClock& clock, const RunContext& context) {
+  constexpr int kTries = 3;
+  ComponentPlan plan = planned;
+  MissedLoops missed = missed_loops(planned, guides, best);
+  double least_excess = missed.excess;
+  for (int i = 0; i < kTries && !missed.places.empty(); ++i) {
+    try {
+      plan = with_corners(plan, missed.places, options.symmetry.planes, context);
+      ComponentResult result = remesh_in_passes(plan, wanted, whole, wishes, guides, options, budget, clock, context);
+      result.passes += best.passes;
+      best.passes = result.passes;
+      missed = missed_loops(plan, guides, result);
+      const bool is_sound = result.flawed_quads <= best.flawed_quads && result.missed_counts <= best.missed_counts;
+      if (!is_sound || missed.excess >= least_excess) continue;
+      least_excess = missed.excess;
+      best = std::move(result);
+    } catch (const InternalError&) {
+      ++best.repairs.broken_promises;
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 ComponentPreview preview_component(const ComponentPlan& planned, double wanted, bool with_quads, const SurfaceIndex& whole,
@@ -135,22 +162,11 @@ ComponentPreview preview_component(const ComponentPlan& planned, double wanted, 
 }
 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
-                                 StageClock& clock, const RunContext& context) {
-  constexpr int kTriesForLoops = 3;
+                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
+                                 const RunContext& context) {
   ComponentResult best = remesh_in_passes(planned, wanted, whole, wishes, guides, options, budget, clock, context);
-  if (planned.guides.empty() || !options.improve) return best;
-  ComponentPlan plan = planned;
-  MissedLoops missed = missed_loops(plan, guides, best);
-  for (int i = 0; i < kTriesForLoops && !missed.places.empty(); ++i) {
-    plan = with_corners(plan, missed.places, options.symmetry.planes, context);
-    ComponentResult result = remesh_in_passes(plan, wanted, whole, wishes, guides, options, budget, clock, context);
-    result.passes += best.passes;
-    best.passes = result.passes;
-    missed = missed_loops(plan, guides, result);
-    const bool is_sound = result.flawed_quads <= best.flawed_quads && result.missed_counts <= best.missed_counts;
-    if (is_sound && missed.excess < missed_loops(planned, guides, best).excess) best = std::move(result);
-  }
+  if (!planned.guides.empty() && options.improve)
+    mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
   return best;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "hybrid_quad/mesh/segment_index.h"
@@ -56,7 +57,10 @@ MissedLoops missed_loops(const ComponentPlan& plan, const HardGuides& guides, co
   MissedLoops missed;
   for (const int guide : loops_on(plan, guides)) {
     const std::vector<std::array<Vector3, 2>> chain = chain_along(result, guide);
-    if (chain.empty()) continue;
+    if (chain.empty()) {
+      missed.excess = std::numeric_limits<double>::infinity();
+      continue;
+    }
     const double length = mean_length(chain);
     const std::vector<std::array<int, 2>> edges = edges_of(plan, guides, guide);
     std::vector<std::array<Vector3, 2>> pieces;

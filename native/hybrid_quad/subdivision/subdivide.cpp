@@ -1,6 +1,4 @@
 #include <opensubdiv/far/primvarRefiner.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <algorithm>
 #include <memory>
@@ -9,6 +7,7 @@
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/base/interruptible.h"
+#include "hybrid_quad/subdivision/catmull_clark_refiner.h"
 #include "hybrid_quad/subdivision/subdivision.h"
 
 namespace hybrid_quad {
@@ -59,28 +58,18 @@ std::vector<float> sharpness_of(const std::vector<double>& values) {
   return out;
 }
 
-std::unique_ptr<Far::TopologyRefiner> refiner_of(const PolygonSoup& mesh, const SubdivisionOptions& options) {
-  std::vector<int> creases;
-  for (const auto& edge : options.crease_edges) creases.insert(creases.end(), edge.begin(), edge.end());
-  const std::vector<float> crease_weights = sharpness_of(options.crease_sharpness);
-  const std::vector<float> vertex_weights = sharpness_of(options.vertex_sharpness);
-  Far::TopologyDescriptor topology;
-  topology.numVertices = static_cast<int>(mesh.positions.size());
-  topology.numFaces = static_cast<int>(mesh.face_sizes.size());
-  topology.numVertsPerFace = mesh.face_sizes.data();
-  topology.vertIndicesPerFace = mesh.face_vertices.data();
-  topology.numCreases = static_cast<int>(crease_weights.size());
-  topology.creaseVertexIndexPairs = creases.data();
-  topology.creaseWeights = crease_weights.data();
-  topology.numCorners = static_cast<int>(vertex_weights.size());
-  topology.cornerVertexIndices = options.sharp_vertices.data();
-  topology.cornerWeights = vertex_weights.data();
-  Sdc::Options scheme;
-  scheme.SetVtxBoundaryInterpolation(options.keep_corners ? Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER
-                                                          : Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-  using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  return std::unique_ptr<Far::TopologyRefiner>(
-      Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, scheme)));
+ControlMesh control_mesh(const PolygonSoup& mesh, const SubdivisionOptions& options) {
+  ControlMesh control;
+  control.vertex_count = static_cast<int>(mesh.positions.size());
+  control.face_sizes = mesh.face_sizes;
+  control.face_vertices = mesh.face_vertices;
+  for (const auto& edge : options.crease_edges)
+    control.crease_vertices.insert(control.crease_vertices.end(), edge.begin(), edge.end());
+  control.crease_sharpness = sharpness_of(options.crease_sharpness);
+  control.sharp_vertices = options.sharp_vertices;
+  control.vertex_sharpness = sharpness_of(options.vertex_sharpness);
+  control.keep_corners = options.keep_corners;
+  return control;
 }
 
 /// Owns all that OpenSubdiv reads, since its work may outlive a cancelled run.
@@ -91,7 +80,7 @@ struct Task {
   bool is_refused = false;
 
   void run() {
-    const std::unique_ptr<Far::TopologyRefiner> refiner = refiner_of(mesh, options);
+    const std::unique_ptr<Far::TopologyRefiner> refiner = catmull_clark_refiner(control_mesh(mesh, options));
     is_refused = !refiner;
     if (is_refused) return;
     Far::TopologyRefiner::UniformOptions uniform(options.levels);
