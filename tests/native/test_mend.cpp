@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "hybrid_quad/improve/mend.h"
+#include "hybrid_quad/improve/place_search.h"
 #include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/quality/quality.h"
@@ -51,6 +52,68 @@ TEST(Mend, LeavesGoodMeshesAlone) {
   Smoother smoother(piece, SmootherOptions{});
   EXPECT_EQ(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}), 0);
   EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
+}
+
+/// What is left of a fold where the smoother has no way downhill: vertices of a row that passed each other.
+TEST(PlaceSearch, FindsPlacesWhereVerticesPassedEachOther) {
+  Sheet sheet;
+  const QuadMesh good = sheet.quads;
+  std::swap(sheet.quads.positions[Sheet::id(5, 5)], sheet.quads.positions[Sheet::id(6, 5)]);
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
+  Smoother smoother(piece, SmootherOptions{});
+  smoother.update_frames(true);
+  const FlawMeasure measure(piece, sheet.index, 1.0);
+  const std::vector<int> flawed = flawed_quads(sheet.quads, sheet.index, {1.0});
+  ASSERT_FALSE(flawed.empty());
+  for (const int q : flawed) search_places(piece, smoother, measure, q);
+  const QuadMesh after = piece.mesh.extract();
+  EXPECT_TRUE(flawed_quads(after, sheet.index, {1.0}).empty());
+  EXPECT_EQ(after.quads, good.quads);
+  for (int v = 0; v < piece.mesh.vertex_count(); ++v) {
+    const Vector3 p = after.positions[v];
+    EXPECT_NEAR(p.z(), 0, 1e-12);
+    if ((p - good.positions[v]).norm() > 0.25) ADD_FAILURE() << "vertex " << v << " went far";
+  }
+}
+
+TEST(PlaceSearch, LeavesWhatItCannotBetter) {
+  Sheet sheet;
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  piece.bind_all();
+  Smoother smoother(piece, SmootherOptions{});
+  smoother.update_frames(true);
+  const FlawMeasure measure(piece, sheet.index, 1.0);
+  const QuadMesh before = piece.mesh.extract();
+  for (int q = 0; q < piece.mesh.quad_count(); ++q) EXPECT_FALSE(search_places(piece, smoother, measure, q));
+  EXPECT_EQ(piece.mesh.extract().positions, before.positions);
+}
+
+TEST(PlaceSearch, LeavesCornersWhereTheyAre) {
+  Sheet sheet;
+  sheet.quads.kind.clear();
+  sheet.quads.anchor.clear();
+  for (std::size_t v = 0; v < sheet.quads.positions.size(); ++v) {
+    const Vector3& p = sheet.quads.positions[v];
+    const bool on_border = p.x() < 1e-9 || p.x() > 1 - 1e-9 || p.y() < 1e-9 || p.y() > 1 - 1e-9;
+    sheet.quads.kind.push_back(on_border ? VertexKind::kCorner : VertexKind::kFree);
+    sheet.quads.anchor.push_back(on_border ? -1 : sheet.features.face_region[0]);
+  }
+  sheet.quads.positions[Sheet::id(5, 1)] = {0.5, -0.05, 0};
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  for (int v = 0; v < piece.mesh.vertex_count(); ++v)
+    if (piece.mesh.is_free(v)) piece.bind_free(v, Vector3::Zero());
+  Smoother smoother(piece, SmootherOptions{});
+  smoother.update_frames(true);
+  const FlawMeasure measure(piece, sheet.index, 1.0);
+  for (int q = 0; q < piece.mesh.quad_count(); ++q)
+    if (measure.is_flawed(q) || measure.lacks_shape(q) > 0) search_places(piece, smoother, measure, q);
+  const QuadMesh after = piece.mesh.extract();
+  EXPECT_TRUE(flawed_quads(after, sheet.index, {1.0}).empty());
+  for (std::size_t v = 0; v < after.positions.size(); ++v)
+    if (sheet.quads.kind[v] == VertexKind::kCorner) {
+      EXPECT_EQ(after.positions[v], sheet.quads.positions[v]);
+    }
 }
 
 TEST(Restoration, LocksAroundNewFlawsOnly) {

@@ -30,19 +30,24 @@ class FlawMeasure {
     return known[0].is_flawed;
   }
 
+  /// What a quad's scaled Jacobian lacks to a fair one.
+  double lacks_shape(int q) const {
+    const std::array<Vector3, 4> p = corners(q);
+    return std::max(0.0, kFair - scaled_jacobian(p[0], p[1], p[2], p[3]));
+  }
+
   /// Minus the number of flawed ones; bad shapes together make a difference below kMostForShapes.
   double operator()(const std::vector<int>& quads) const {
-    constexpr double kFair = 0.2;
     double flawed = 0, bad = 0;
     for (const int q : quads) {
       flawed += is_flawed(q);
-      const std::array<Vector3, 4> p = corners(q);
-      bad += std::max(0.0, kFair - scaled_jacobian(p[0], p[1], p[2], p[3]));
+      bad += lacks_shape(q);
     }
     return -flawed - kMostForShapes * bad / (1 + bad);
   }
   const SurfaceIndex& surface() const { return whole_; }
 
+  static constexpr double kFair = 0.2;
   static constexpr double kMostForShapes = 0.4;
 
  private:

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hybrid_quad/improve/flaw_measure.h"
+#include "hybrid_quad/improve/place_search.h"
 #include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/sequence_search.h"
 #include "hybrid_quad/improve/trial.h"
@@ -24,13 +25,20 @@ class Mender {
   bool mend(int q) {
     for (const int rings : {0, 1, 2})
       if (move_vertices(q, rings)) return true;
-    return change_neighbours(q, kLikely) || change_neighbours(q, kFar) || fill_anew(q);
+    return find_places(q) || change_neighbours(q, kLikely) || change_neighbours(q, kFar) || fill_anew(q);
+  }
+
+  bool is_folded(int q) const { return measure_.lacks_shape(q) > 0; }
+
+  bool find_places(int q) {
+    for (int i = 0; i < kTrialsOfPlaces; ++i) search_.count_trial();
+    return search_places(piece_, smoother_, measure_, q);
   }
 
   bool exhausted() const { return search_.exhausted(); }
 
  private:
-  static constexpr int kEffort = 100;
+  static constexpr int kEffort = 100, kTrialsOfPlaces = 5;
   static constexpr double kFewer = 0.5;
   static constexpr SearchLimits kLikely{1, 30, -30, 400, 1, 40}, kFar{2, 30, -30, 4000, 12, 120};
 
@@ -101,17 +109,20 @@ class Mender {
 int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area, const RunContext& context) {
   constexpr int kRounds = 3;
   Mender mender(piece, smoother, whole, enough_area);
-  int changes = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    int mended = 0;
-    for (int q = 0; q < piece.mesh.quad_count() && !mender.exhausted(); ++q) {
-      if ((q & 255) == 0) context.checkpoint();
-      if (piece.mesh.alive(q) && mender.is_flawed(q)) mended += mender.mend(q);
+  // Rounds over all quads, until one changes nothing.
+  const auto in_rounds = [&](const auto& change) {
+    int changes = 0;
+    for (int round = 0, last = -1; round < kRounds && changes != last; ++round) {
+      last = changes;
+      for (int q = 0; q < piece.mesh.quad_count() && !mender.exhausted(); ++q) {
+        if ((q & 255) == 0) context.checkpoint();
+        if (piece.mesh.alive(q)) changes += change(q);
+      }
     }
-    changes += mended;
-    if (mended == 0) break;
-  }
-  return changes;
+    return changes;
+  };
+  const int mended = in_rounds([&](int q) { return mender.is_flawed(q) && mender.mend(q); });
+  return mended + in_rounds([&](int q) { return mender.is_folded(q) && mender.find_places(q); });
 }
 
 }  // namespace hybrid_quad

@@ -7,7 +7,7 @@
 namespace hybrid_quad {
 
 /// The last resort for quads that are flawed (quality.h) when all else is done: other positions or other neighbours, whatever
-/// valences and shapes suffer, if only fewer quads around are flawed.
+/// valences and shapes suffer, if only fewer quads around are flawed. Then other positions where quads are folded or nearly so.
 /// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
 /// \returns number of changes made
 int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area, const RunContext& context);

@@ -25,14 +25,11 @@ constexpr PassSettings kSettings[] = {{},
                                       {4.0, 1e-5, true},
                                       {3.2, 1e-4, true},
                                       {5.0, 1e-4, true}};
-/// So many flawed quads are not mended by another pass with as few: only where there are far more is the surface nowhere thinner
-/// than quads are long. Those are taken out again afterwards.
+/// So many flawed quads are not mended by another pass with as few: the surface is thinner than quads are long. More are taken out
+/// again afterwards.
 bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
-  constexpr int kFew = 5, kMany = 12;
-  constexpr double kManyOfAll = 0.01, kFarMore = 2.5;
-  const double flawed = best.flawed_quads;
-  if (flawed > kFew && flawed > kManyOfAll * static_cast<double>(best.mesh.quads.size())) return settings.quads_factor < kFarMore;
-  return flawed > kMany && !settings.as_needed;
+  constexpr int kMany = 12;
+  return best.flawed_quads > kMany && !settings.as_needed;
 }
 
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where

@@ -52,7 +52,7 @@ double mean_length(const std::vector<std::array<Vector3, 2>>& segments) {
 }  // namespace
 
 MissedLoops missed_loops(const ComponentPlan& plan, const HardGuides& guides, const ComponentResult& result) {
-  constexpr double kApart = 0.3;      // of an edge: corners nearer to each other would bring worse than they mend
+  constexpr double kApart = 0.2;      // of an edge: corners nearer to each other would bring worse than they mend
   constexpr double kElsewhere = 0.5;  // edges from the component's part of the guide
   MissedLoops missed;
   for (const int guide : loops_on(plan, guides)) {
