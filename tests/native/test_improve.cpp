@@ -328,6 +328,33 @@ TEST(Improve, OneQuadOnATriangleGetsInnerVertices) {
   expect_on_features(quads, surface);
 }
 
+/// Two triangles beside each other, folded along their common side, each filled by one quad that is straight in the middle of another
+/// side: opening one leaves the other, and so the worst around, as bad as before.
+TEST(Improve, StraightQuadsSideBySideGetInnerVertices) {
+  const TriangleMesh half = triangle(6);
+  std::vector<Vector3> positions = half.positions();
+  std::vector<std::array<int, 3>> faces = half.faces();
+  std::vector<int> mirrored(positions.size());
+  for (int v = 0; v < half.vertex_count(); ++v) {
+    const Vector3 p = half.position(v);
+    mirrored[v] = p.x() == 0 ? v : static_cast<int>(positions.size());
+    if (p.x() > 0) positions.emplace_back(-p.x(), p.y(), p.x());
+  }
+  for (const auto& f : half.faces()) faces.push_back({mirrored[f[0]], mirrored[f[2]], mirrored[f[1]]});
+  const Surface surface(TriangleMesh(positions, faces), 20);
+  QuadMesh quads;
+  quads.positions = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.5, 0, 0.5}, {-1, 0, 1}};
+  quads.quads = {{0, 1, 2, 3}, {0, 3, 5, 4}};
+  bind(quads, surface);
+  ASSERT_EQ(quads.feature_edges.size(), 7u);
+  ASSERT_TRUE(violations_of(quads).empty());
+  ASSERT_NEAR(shape_quality(quads).scaled_jacobian_min, 0, 1e-12);
+  improve(quads, surface);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.1);
+  expect_on_features(quads, surface);
+}
+
 TEST(Improve, CrowdedQuadsGo) {
   // One square of the grid holds a web of quads as small as a hundredth of it.
   const Surface surface(test::flat_grid(8, 8));

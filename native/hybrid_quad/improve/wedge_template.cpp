@@ -1,7 +1,10 @@
 #include "hybrid_quad/improve/wedge_template.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "hybrid_quad/improve/quad_moves.h"
 #include "hybrid_quad/improve/trial.h"
@@ -17,13 +20,14 @@ struct Place {
   bool mirrored;
 };
 
-/// The quad at v whose sides at v are both features, -1 if there is none.
-int straight_quad(const EditMesh& mesh, int v) {
-  for (const int q : mesh.quads_at(v)) {
-    const int i = mesh.corner_of(q, v);
-    if (mesh.is_feature(v, mesh.quad(q)[(i + 1) & 3]) && mesh.is_feature(v, mesh.quad(q)[(i + 3) & 3])) return q;
-  }
-  return -1;
+/// Whether both sides of quad q at v are features.
+bool is_straight_at(const EditMesh& mesh, int v, int q) {
+  if (!mesh.alive(q)) return false;
+  const auto& corners = mesh.quad(q);
+  const auto at = std::find(corners.begin(), corners.end(), v);
+  if (at == corners.end()) return false;
+  const auto i = at - corners.begin();
+  return mesh.is_feature(v, corners[(i + 1) & 3]) && mesh.is_feature(v, corners[(i + 3) & 3]);
 }
 
 bool place_on(const EditMesh& mesh, int v, int q, bool mirrored, Place* place) {
@@ -80,9 +84,21 @@ void pillow(Workpiece& piece, const Smoother& smoother, int q) {
   }
 }
 
-bool try_places(Workpiece& piece, Smoother& smoother, int v, int q) {
-  constexpr double kGain = 1e-3;
+/// Minus how bad some quads are together: straight corners first. The worst alone would not do: others around may be as bad.
+double straightness(const Smoother& smoother, const std::vector<int>& quads) {
+  constexpr double kStraight = 1e-3;
   constexpr double kGoodEnough = 0.1;  // a wedge's tip may be acute: any positive quality beats a straight corner
+  double bad = 0;
+  for (const int q : quads) {
+    const double quality = smoother.signed_quality(q);
+    bad += (quality < kStraight) + std::max(0.0, kGoodEnough - quality);
+  }
+  return -bad;
+}
+
+bool try_places(Workpiece& piece, Smoother& smoother, int v, int q) {
+  constexpr double kGain = 1e-3, kWhatever = std::numeric_limits<double>::infinity();
+  const Trial::Measure measure = [&smoother](const std::vector<int>& quads) { return straightness(smoother, quads); };
   std::array<Place, 2> places;
   int count = 0;
   for (const bool mirrored : {false, true})
@@ -90,16 +106,16 @@ bool try_places(Workpiece& piece, Smoother& smoother, int v, int q) {
   if (count == 2 && price(piece.mesh, places[1].y) < price(piece.mesh, places[0].y)) std::swap(places[0], places[1]);
   for (int i = 0; i < count; ++i) {
     const Place place = places[i];
-    Trial trial(piece, smoother, {place.a, place.v, place.b, place.c, place.x, place.y});
+    Trial trial(piece, smoother, {place.a, place.v, place.b, place.c, place.x, place.y}, measure);
     apply(piece, smoother, place);
-    if (trial.keep(kGoodEnough, kGain)) return true;
+    if (trial.keep(kWhatever, kGain)) return true;
   }
   constexpr double kFolded = 0.05;
   if (smoother.signed_quality(q) > kFolded || piece.mesh.is_locked(q)) return false;
   const EditMesh::Quad corners = piece.mesh.quad(q);
-  Trial trial(piece, smoother, {corners.begin(), corners.end()});
+  Trial trial(piece, smoother, {corners.begin(), corners.end()}, measure);
   pillow(piece, smoother, q);
-  return trial.keep(kGoodEnough, kGain);
+  return trial.keep(kWhatever, kGain);
 }
 
 }  // namespace
@@ -110,8 +126,8 @@ int open_straight_corners(Workpiece& piece, Smoother& smoother, const RunContext
   for (int v = 0; v < n; ++v) {
     if ((v & 1023) == 0) context.checkpoint();
     if (piece.mesh.is_free(v) || !has_straight_corner(piece.mesh, v)) continue;
-    const int q = straight_quad(piece.mesh, v);
-    if (q >= 0 && try_places(piece, smoother, v, q)) ++opened;
+    const std::vector<int> quads(piece.mesh.quads_at(v).begin(), piece.mesh.quads_at(v).end());
+    for (const int q : quads) opened += is_straight_at(piece.mesh, v, q) && try_places(piece, smoother, v, q);
   }
   return opened;
 }
