@@ -34,10 +34,10 @@ TEST(FlatQuads, GetAnAreaOnTheRightSide) {
   for (std::size_t i = 0; i < flat.size(); ++i) {
     QuadMesh mesh = nine_quads();
     for (int c = 0; c < 4; ++c) mesh.positions[mesh.quads[4][c]] = flat[i][c];
-    EXPECT_EQ(open_flat_quads(mesh), 1) << i;
+    EXPECT_EQ(open_flat_quads(mesh, 1), 1) << i;
     EXPECT_GT(upward_area(mesh, 4), 1e-10) << i;
     for (int c = 0; c < 4; ++c) EXPECT_LT((mesh.positions[mesh.quads[4][c]] - flat[i][c]).norm(), 1e-3) << i;
-    EXPECT_EQ(open_flat_quads(mesh), 0) << i;
+    EXPECT_EQ(open_flat_quads(mesh, 1), 0) << i;
   }
 }
 
@@ -48,14 +48,22 @@ TEST(FlatQuads, FreeVerticesMoveFirst) {
   mesh.positions[quad[3]] = {1.5, 1, 0};
   mesh.positions[quad[2]] = {1.8, 1, 0};
   const QuadMesh before = mesh;
-  EXPECT_EQ(open_flat_quads(mesh), 1);
+  EXPECT_EQ(open_flat_quads(mesh, 1), 1);
   for (const int v : {quad[0], quad[1], quad[2]}) EXPECT_EQ(mesh.positions[v], before.positions[v]);
+}
+
+TEST(FlatQuads, SmallOnesCountAsPartOfSomethingLarge) {
+  QuadMesh mesh = nine_quads();
+  for (Vector3& p : mesh.positions) p *= 1e-6;
+  EXPECT_EQ(open_flat_quads(mesh, 1e-6), 0);
+  EXPECT_GT(open_flat_quads(mesh, 1), 0);
+  for (int q = 0; q < 9; ++q) EXPECT_GT(std::abs(upward_area(mesh, q)), 1e-10);
 }
 
 TEST(FlatQuads, GoodOnesStay) {
   QuadMesh mesh = nine_quads();
   const QuadMesh before = mesh;
-  EXPECT_EQ(open_flat_quads(mesh), 0);
+  EXPECT_EQ(open_flat_quads(mesh, 1), 0);
   EXPECT_EQ(mesh.positions, before.positions);
 }
 

@@ -12,7 +12,7 @@ constexpr double kStep = 1e-4;        // over the mean edge length
 
 class FlatQuadOpener {
  public:
-  explicit FlatQuadOpener(QuadMesh& mesh) : mesh_(mesh), edge_(mean_edge()), quads_at_(mesh.positions.size()) {
+  FlatQuadOpener(QuadMesh& mesh, double edge) : mesh_(mesh), edge_(edge), quads_at_(mesh.positions.size()) {
     for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
       for (const int v : mesh.quads[q]) quads_at_[v].push_back(q);
   }
@@ -34,13 +34,6 @@ class FlatQuadOpener {
   }
 
  private:
-  double mean_edge() const {
-    double sum = 0;
-    for (const auto& v : mesh_.quads)
-      for (int i = 0; i < 4; ++i) sum += (mesh_.positions[v[(i + 1) % 4]] - mesh_.positions[v[i]]).norm();
-    return sum / (4.0 * static_cast<double>(mesh_.quads.size()));
-  }
-
   Vector3 diagonal(int q, int i) const { return mesh_.positions[mesh_.quads[q][i + 2]] - mesh_.positions[mesh_.quads[q][i]]; }
   Vector3 area_vector(int q) const { return 0.5 * diagonal(q, 0).cross(diagonal(q, 1)); }
 
@@ -83,6 +76,6 @@ class FlatQuadOpener {
 
 }  // namespace
 
-int open_flat_quads(QuadMesh& mesh) { return mesh.quads.empty() ? 0 : FlatQuadOpener(mesh).run(); }
+int open_flat_quads(QuadMesh& mesh, double edge) { return FlatQuadOpener(mesh, edge).run(); }
 
 }  // namespace hybrid_quad

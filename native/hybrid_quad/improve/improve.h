@@ -72,9 +72,11 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const ImproveOptions& options, const QuadNumber& number, const RunContext& context,
                        const SurfaceIndex* whole = nullptr);
 
-/// The last resort against quads without area (below 1e-10 of the squared mean edge length): a vertex or two of each move by a
-/// ten thousandth of the mean edge so that it has one, on the side to which the quads around it point. Free vertices go first,
-/// then those on curves; a corner that has to move is no input vertex any more (anchor -1). \returns number of quads opened
-int open_flat_quads(QuadMesh& mesh);
+/// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by a
+/// ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
+/// then those on curves; a corner that has to move is no input vertex any more (anchor -1).
+/// \param edge  mean edge length of all that the quads are part of
+/// \returns number of quads opened
+int open_flat_quads(QuadMesh& mesh, double edge);
 
 }  // namespace hybrid_quad

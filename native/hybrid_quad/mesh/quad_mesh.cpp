@@ -114,6 +114,13 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
 
 }  // namespace
 
+double mean_edge_length(const QuadMesh& mesh) {
+  double sum = 0;
+  for (const auto& quad : mesh.quads)
+    for (int i = 0; i < 4; ++i) sum += (mesh.positions[quad[(i + 1) & 3]] - mesh.positions[quad[i]]).norm();
+  return mesh.quads.empty() ? 0 : sum / (4.0 * static_cast<double>(mesh.quads.size()));
+}
+
 std::vector<std::string> violations_of(const QuadMesh& mesh) {
   std::vector<std::string> found;
   if (!readable(mesh, found)) return found;

@@ -24,6 +24,9 @@ struct QuadMesh {
   std::vector<FeatureEdge> feature_edges;  ///< chains that cover the feature curves, boundary included
 };
 
+/// Of the sides of all quads (an inner edge counts twice); 0 without quads.
+double mean_edge_length(const QuadMesh& mesh);
+
 /// Everything the result must satisfy as an indexed polygon mesh, checked by code that shares nothing with
 /// what built it: four distinct vertices a face, edges in one or two faces with opposite direction, one fan a
 /// vertex, no interior vertex with fewer than three faces, no two faces with two common edges, finite

@@ -116,7 +116,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(planned, count, whole, wishes, options, best, clock, context);
-  best.repairs.opened_flat_quads += open_flat_quads(best.mesh);
+  best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
   return best;
 }
 

@@ -60,7 +60,7 @@ class ComponentRemesher {
     prepare();
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
-    result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh);
+    result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
     require_valid("improve", result_.mesh);
     result_.flawed_quads = static_cast<int>(finishing_.flawed(result_.mesh, context_.threads).size());
     const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);

@@ -86,6 +86,17 @@ int lone_quads(const QuadMesh& mesh) {
   return count;
 }
 
+/// Quads of a small component can have an area beside the component's other quads, and none beside all.
+void open_flat_quads_of(std::vector<ComponentResult>& parts) {
+  double length = 0, quads = 0;
+  for (const ComponentResult& part : parts) {
+    const double count = static_cast<double>(part.mesh.quads.size());
+    length += count * mean_edge_length(part.mesh);
+    quads += count;
+  }
+  for (ComponentResult& part : parts) part.repairs.opened_flat_quads += open_flat_quads(part.mesh, length / quads);
+}
+
 std::vector<int> smallest_first(const std::vector<ComponentPlan>& plans) {
   std::vector<int> order(plans.size());
   std::iota(order.begin(), order.end(), 0);
@@ -183,6 +194,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
     done += share;
   }
+  open_flat_quads_of(parts);
   GuidedEdges guided;
   for (std::size_t i = 0; i < components.size(); ++i) {
     counts.record(plans[i], on_curves_of(plans[i], parts[i]));
