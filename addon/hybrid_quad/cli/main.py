@@ -13,7 +13,7 @@ from types import FrameType
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
-from . import batch_command, check_command, exit_codes, remesh_command
+from . import batch_command, case_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
 
 
@@ -77,4 +77,5 @@ def _parser() -> argparse.ArgumentParser:
     remesh_command.add_to(commands)
     check_command.add_to(commands)
     batch_command.add_to(commands)
+    case_command.add_to(commands)
     return parser
