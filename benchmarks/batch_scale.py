@@ -30,7 +30,8 @@ from hybrid_quad.batch_jobs.job_list import list_assets
 from hybrid_quad.batch_jobs.run_asset import run_asset
 from hybrid_quad.cli.main import main as command
 
-STEPS = ("list", "write list", "read list", "range", "resume", "collect", "tables", "page")
+STEPS = ("list", "write list", "read list", "range", "resume", "collect", "tables", "page")  # and "dask"
+ON_DASK = 2000
 
 
 def main() -> None:
@@ -92,7 +93,22 @@ def steps_of(place: Path) -> dict[str, Callable[[], object]]:
         for asset in assets():
             run_asset(asset, plan)
 
+    def on_dask() -> None:
+        """The first of the assets, on two workers of this machine; the figures are the scheduler's and the client's."""
+        from distributed import LocalCluster
+
+        from hybrid_quad.batch_jobs.dask_engine import run_on_dask
+
+        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+            begun = time.process_time()
+            done = len(list(run_on_dask(assets()[:ON_DASK], plan, cluster.scheduler_address)))
+            print(
+                f"  {done} on Dask: {time.process_time() - begun:.2f} processor seconds of scheduler and client",
+                flush=True,
+            )
+
     return {
+        "dask": on_dask,
         "list": assets,
         "write list": lambda: write_job_file(listed, assets()),
         "read list": lambda: list_assets([str(listed)], {}, plan, lambda _: []),

@@ -269,8 +269,9 @@ def test_a_machine_at_fault_stops_the_batch(meshes, tmp_path):
     assert batch(blend, "--output", tmp_path / "other", "--blender", "/nowhere/blender") == exit_codes.WRONG_USAGE
 
 
-def test_a_farm_runs_parts_and_one_summary(meshes, tmp_path):
-    out, listed = tmp_path / "out", tmp_path / "list.json"
+@pytest.mark.parametrize("name", ["list.json", "list.jsonl"])
+def test_a_farm_runs_parts_and_one_summary(meshes, tmp_path, name):
+    out, listed = tmp_path / "out", tmp_path / name
     assert batch(meshes, "--output", out, "--write-list", listed) == exit_codes.OK
     assert not statuses(out)
     for part in ("0-1", "2-3", "4-5"):

@@ -136,7 +136,7 @@ def test_openjd_runs_the_template(root, assets, tmp_path, program):
     openjd = shutil.which("openjd", path=f"{Path(sys.executable).parent}:{os.environ.get('PATH', '')}")
     if openjd is None:
         pytest.skip("openjd-cli is not installed")
-    out, listed, count = tmp_path / "out", tmp_path / "list.json", 5
+    out, listed, count = tmp_path / "out", tmp_path / "list.jsonl", 5
     main(["batch", str(assets(count)), "--output", str(out), "--quads", "60", "--write-list", str(listed), "--quiet"])
     values = {"JobList": listed, "Output": out, "Assets": f"0-{count - 1}", "ChunkSize": 2, "Program": program}
     template = root / "farm" / "openjd" / "hybrid_quad_batch.yaml"
@@ -184,7 +184,7 @@ def test_the_flamenco_job_compiles_to_tasks_that_run(root, assets, tmp_path, pro
     node = shutil.which("node")
     if node is None:
         pytest.skip("Node is not installed")
-    out, listed, count = tmp_path / "out", tmp_path / "list.json", 5
+    out, listed, count = tmp_path / "out", tmp_path / "list.jsonl", 5
     main(["batch", str(assets(count)), "--output", str(out), "--quads", "60", "--write-list", str(listed), "--quiet"])
     (tmp_path / "stub.js").write_text(STUB)
     settings = {"job_list": str(listed), "output": str(out), "assets": "0-4", "chunk_size": 2, "program": str(program)}
