@@ -53,7 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(
             f"internal error: {kind}{error}\n"
             "This is a bug of hybrid-quad, not of your mesh, and nothing was written. Please report it with the mesh, "
-            f"the version ({__version__}) and this command:\n  hybrid-quad {shlex.join(given)}"
+            f"the version ({__version__}) and this command:\n  hybrid-quad {shlex.join(given)}\n"
+            "hybrid-quad case packs all of that into one file, and leaves names out if asked."
         )
         return exit_codes.BUG
 
