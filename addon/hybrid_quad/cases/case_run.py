@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +13,7 @@ from ..batch_jobs.run_asset import run_asset
 from ..batch_jobs.settings import Settings, as_arguments, canonical
 from ..batch_jobs.worker_process import run_process
 from ..core.options import usable_threads
+from ..core.python_programs import python_program
 
 TIME_LIMIT = 3600.0  # seconds, where the settings have none
 RESULT = "quads.off"
@@ -98,4 +98,4 @@ def check_report(source: Path) -> bytes | None:
 
 def check_command(source: Path, report: Path) -> list[str]:
     """Words of the command that checks a mesh file."""
-    return [sys.executable, "-m", "hybrid_quad", "check", str(source), "--report", str(report)]
+    return [python_program(), "-m", "hybrid_quad", "check", str(source), "--report", str(report)]
