@@ -5,8 +5,9 @@
 
 C++: a folder of native/hybrid_quad includes only itself and folders that stand before it in native/CMakeLists.txt; of
 a stage, others see only its public header, named like its folder, and those listed in PUBLIC_HEADERS.
-Python: core/ imports none of bpy, worker/, batch_jobs/, cli/ and blender/; worker/ and batch_jobs/ none of bpy, each other, cli/
-and blender/; cli/ neither bpy nor blender/; of the rest, only blender/ and batch.py import bpy.
+Python: core/ imports none of bpy, worker/, batch_jobs/, cases/, cli/ and blender/; worker/ and batch_jobs/ none of bpy, each other,
+cases/, cli/ and blender/; cases/ none of bpy, worker/, cli/ and blender/; cli/ neither bpy nor blender/; of the rest, only blender/
+and batch.py import bpy.
 
 Prints each violation with its file and line; exit status 1 if there is one.
 """
@@ -31,9 +32,10 @@ PUBLIC_HEADERS = {
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 FORBIDDEN_IMPORTS = {
-    "core": ("bpy", "worker", "batch_jobs", "cli", "blender"),
-    "worker": ("bpy", "batch_jobs", "cli", "blender"),
-    "batch_jobs": ("bpy", "worker", "cli", "blender"),
+    "core": ("bpy", "worker", "batch_jobs", "cases", "cli", "blender"),
+    "worker": ("bpy", "batch_jobs", "cases", "cli", "blender"),
+    "batch_jobs": ("bpy", "worker", "cases", "cli", "blender"),
+    "cases": ("bpy", "worker", "cli", "blender"),
     "cli": ("bpy", "blender"),
     "": ("bpy",),
 }

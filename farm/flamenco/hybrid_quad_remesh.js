@@ -3,7 +3,7 @@
 // Put this file into the folder "scripts" beside the Flamenco Manager. Before a job is submitted, freeze the list, so that
 // all workers number the assets alike:
 //
-//     hybrid-quad batch /shared/assets --quads 5000 --output /shared/quads --write-list /shared/jobs.json
+//     hybrid-quad batch /shared/assets --quads 5000 --output /shared/quads --write-list /shared/jobs.jsonl
 //
 // An asset that cannot be remeshed is no failed task: its status file and the summary say so. Tasks fail only where a
 // machine lets nothing run; Flamenco then tries again elsewhere. It cancels a job in which a tenth of the tasks failed, and

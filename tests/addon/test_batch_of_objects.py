@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 
 import bpy
 import pytest
@@ -56,3 +57,14 @@ def test_a_batch_in_blender_of_a_file_with_many_objects(blend, tmp_path):
     before = {path: path.stat().st_mtime_ns for path in out.rglob("*.hq.json")}
     assert command.main(words) == 0
     assert {path: path.stat().st_mtime_ns for path in out.rglob("*.hq.json")} == before
+
+
+def test_mesh_files_are_run_and_packed_by_blenders_own_python(tmp_path):
+    source, case = tmp_path / "one sided.obj", tmp_path / "case.zip"
+    source.write_text("v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n")
+    assert command.main(["batch", str(source), "--output", str(tmp_path / "out"), "--quiet"]) == 0
+    assert json.loads((tmp_path / "out" / "one sided.hq.json").read_text())["code"] == "non_finite_vertex"
+    assert command.main(["case", str(source), "-o", str(case), "--anonymous", "--quiet"]) == 0
+    with zipfile.ZipFile(case) as archive:
+        assert json.loads(archive.read("case.json"))["outcome"]["code"] == "non_finite_vertex"
+    assert command.main(["case", "--replay", str(case), "--quiet"]) == 0

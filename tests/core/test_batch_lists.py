@@ -1,18 +1,21 @@
 """From what a user names to assets with settings and names of their own."""
 
+import csv
 import json
 import os
+import pickle
+import re
 
 import pytest
 
-from hybrid_quad.batch_jobs import settings
-from hybrid_quad.batch_jobs.asset import Asset, BatchPlan
+from hybrid_quad.batch_jobs import settings, summary, summary_page
+from hybrid_quad.batch_jobs.asset import Asset, BatchPlan, files_of
 from hybrid_quad.batch_jobs.asset_lock import asset_lock
 from hybrid_quad.batch_jobs.asset_range import in_range
 from hybrid_quad.batch_jobs.asset_status import AssetStatus, read_status, stands, write_status
 from hybrid_quad.batch_jobs.job_file import JobFileError, write_job_file
 from hybrid_quad.batch_jobs.job_hash import job_hash
-from hybrid_quad.batch_jobs.job_list import ObjectsUnknown, list_assets
+from hybrid_quad.batch_jobs.job_list import ObjectsUnknown, list_assets, list_lines
 from hybrid_quad.cli import main as cli_main
 
 
@@ -228,3 +231,54 @@ def test_many_quads_are_drawn_without_gaps():
     filled = (pixels != 255).any(axis=2)
     inside = [row[row.argmax() : len(row) - row[::-1].argmax()] for row in filled if row.any()]
     assert min(row.mean() for row in inside) == 1
+
+
+def test_a_task_reads_its_lines_of_a_list_and_no_others(folder, plan, tmp_path):
+    listed = tmp_path / "list.jsonl"
+    assets = list_assets([str(folder)], {"quads": 300, "no_sharp": True}, plan, no_objects)
+    write_job_file(listed, assets)
+    assert list_assets([str(listed)], {}, plan, no_objects) == assets
+    for text, chosen in (("1-2", assets[1:]), ("0,2", [assets[0], assets[2]]), ("2-99", assets[2:]), ("7", [])):
+        assert list_lines(str(listed), text, {}, plan, no_objects) == chosen
+    lines = listed.read_text().splitlines()
+    listed.write_text("\n".join(["no JSON", lines[1], "", "{}"]) + "\n")
+    assert list_lines(str(listed), "1", {}, plan, no_objects) == assets[1:2]
+    with pytest.raises(JobFileError, match="no JSON"):
+        list_lines(str(listed), "0", {}, plan, no_objects)
+    with pytest.raises(JobFileError, match="has no input"):
+        list_lines(str(listed), "2", {}, plan, no_objects)
+    with pytest.raises(ValueError, match="ranges"):
+        list_lines(str(listed), "a-b", {}, plan, no_objects)
+
+
+@pytest.mark.parametrize("row", [{"input": "in", "name": "x"}, {"input": "in/a.obj"}])
+def test_a_line_that_is_not_one_named_asset_is_no_line_to_count(folder, plan, tmp_path, row):
+    listed = tmp_path / "list.jsonl"
+    listed.write_text(json.dumps(row) + "\n")
+    with pytest.raises(JobFileError, match="--write-list"):
+        list_lines(str(listed), "0", {}, plan, no_objects)
+
+
+def test_a_page_shows_what_a_browser_can_and_failures_first(tmp_path, plan, monkeypatch):
+    monkeypatch.setattr(summary_page, "MOST_CARDS", 3)
+    assets = [Asset(f"folder/asset{number}", "x.obj") for number in range(5)]
+    for number, asset in enumerate(assets[:4]):
+        path = files_of(asset, plan).status
+        path.parent.mkdir(parents=True, exist_ok=True)
+        report = {"quads": number, "warnings": [f"näher {number}"], "stages": [{"name": "x"}] * 1000}
+        state = "ok" if number else "crashed"
+        write_status(path, AssetStatus(asset.name, asset.source, state, report=report, settings={"quads": 5}))
+    lines = summary.collect(assets, plan)
+    summary.write_summary(tmp_path, lines)
+    summary_page.write_page(tmp_path, lines)
+    page = (tmp_path / "summary.html").read_text(encoding="utf-8")
+    shown = re.findall(r"<h2>(.*?)</h2>", page)
+    assert shown == ["folder/asset0", "folder/asset4", "folder/asset1"] and "3 of 5 assets" in page
+    whole = json.loads((tmp_path / "summary.json").read_text())
+    assert [line["asset"] for line in whole["lines"]] == [asset.name for asset in assets]
+    assert whole["lines"][2]["quads"] == 2 and whole["lines"][2]["warnings"] == ["näher 2"]
+    assert whole["statuses"] == {"ok": 3, "crashed": 1, "pending": 1}
+    rows = list(csv.DictReader((tmp_path / "summary.csv").open(encoding="utf-8")))
+    assert [row["warnings"] for row in rows] == [*(f"näher {n}" for n in range(4)), ""]
+    # Of a million assets the reports would not fit into memory.
+    assert len(pickle.dumps(lines)) < 5000

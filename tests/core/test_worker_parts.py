@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hybrid_quad import Cancelled, InputError, InternalError
+from hybrid_quad.core import python_programs
 from hybrid_quad.worker import interpreter, messages
 from hybrid_quad.worker.bundle import load_bundle, save_bundle
 from hybrid_quad.worker.death import cause_of
@@ -109,9 +110,9 @@ def test_a_python_that_is_there_is_preferred_to_the_host(tmp_path):
 
 @pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])
 def test_programs_of_a_bundled_python(monkeypatch, platform):
-    monkeypatch.setattr(interpreter.sys, "platform", platform)
-    monkeypatch.setattr(interpreter.sys, "prefix", "/opt/blender/4.2/python")
-    monkeypatch.setattr(interpreter.sys, "executable", "/opt/blender/blender")
-    programs = [path.as_posix() for path in interpreter.python_programs()]
+    monkeypatch.setattr(python_programs.sys, "platform", platform)
+    monkeypatch.setattr(python_programs.sys, "prefix", "/opt/blender/4.2/python")
+    monkeypatch.setattr(python_programs.sys, "executable", "/opt/blender/blender")
+    programs = [path.as_posix() for path in python_programs.python_programs()]
     assert programs[0].startswith("/opt/blender/4.2/python/bin/python")
     assert "/opt/blender/blender" not in programs

@@ -22,7 +22,7 @@ from hybrid_quad.batch_jobs.asset_status import read_status
 from hybrid_quad.batch_jobs.engine import run_locally
 from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
-from hybrid_quad.core import picture
+from hybrid_quad.core import native, picture
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
@@ -80,6 +80,23 @@ def test_failures_of_assets_are_no_failure_of_the_batch(meshes, tmp_path):
     assert statuses(out)[out / "moebius.hq.json"]["code"] == "non_orientable"
     assert batch(meshes, "--output", out, "--fail-above", 40) == exit_codes.OK
     assert batch(meshes, "--output", out, "--fail-above", 39) == exit_codes.CANNOT_REMESH
+
+
+def test_workers_find_the_compiled_part_where_blenders_extensions_have_it(meshes, tmp_path):
+    """In a package of its own, in a folder that only Blender's own process knows."""
+    own, wheels, out = tmp_path / "own", tmp_path / "wheels", tmp_path / "out"
+    compiled = Path(native.load().__file__)
+    package = Path(run_module.__file__).parents[1]
+    shutil.copytree(package, own / "hybrid_quad", ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
+    (wheels / "hybrid_quad_native").mkdir(parents=True)
+    (wheels / "hybrid_quad_native" / "__init__.py").touch()
+    shutil.copy(compiled, wheels / "hybrid_quad_native")
+    words = ["batch", str(meshes / "torus0.obj"), "--output", str(out), "--quads", "150", "--quiet"]
+    code = f"import sys; sys.path[:0] = {[str(own), str(wheels)]}; from hybrid_quad.cli.main import main; main({words})"
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120, env=environment, cwd=tmp_path)
+    status = json.loads((out / "torus0.hq.json").read_text())
+    assert status["status"] == "ok", status["message"]
 
 
 def test_the_summary_has_every_asset(meshes, tmp_path):
@@ -269,8 +286,9 @@ def test_a_machine_at_fault_stops_the_batch(meshes, tmp_path):
     assert batch(blend, "--output", tmp_path / "other", "--blender", "/nowhere/blender") == exit_codes.WRONG_USAGE
 
 
-def test_a_farm_runs_parts_and_one_summary(meshes, tmp_path):
-    out, listed = tmp_path / "out", tmp_path / "list.json"
+@pytest.mark.parametrize("name", ["list.json", "list.jsonl"])
+def test_a_farm_runs_parts_and_one_summary(meshes, tmp_path, name):
+    out, listed = tmp_path / "out", tmp_path / name
     assert batch(meshes, "--output", out, "--write-list", listed) == exit_codes.OK
     assert not statuses(out)
     for part in ("0-1", "2-3", "4-5"):

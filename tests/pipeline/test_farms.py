@@ -5,13 +5,15 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hybrid_quad.batch_jobs.asset import WORK_FOLDER
+from hybrid_quad.batch_jobs.asset import WORK_FOLDER, BatchPlan
+from hybrid_quad.batch_jobs.job_list import list_assets
 from hybrid_quad.batch_jobs.worker_process import PACKAGE_PARENT
 from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
@@ -69,15 +71,19 @@ def wait_for(condition, seconds=120):
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """A Dask scheduler with two workers of one thread each, on this machine: its address and the workers."""
+def cluster(tmp_path, request):
+    """A Dask scheduler with two workers of one thread each, on this machine: its address and the workers.
+
+    The parameter is how many deaths of workers a task may survive (3, as usual).
+    """
     pytest.importorskip("distributed")
     file = tmp_path / "scheduler.json"
+    environment = {**ENVIRONMENT, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(getattr(request, "param", 3))}
 
     def start(command, *arguments):
         words = [sys.executable, "-m", "distributed.cli." + command, "--scheduler-file", str(file), *arguments]
         return subprocess.Popen(
-            words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path
+            words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path
         )
 
     processes = [start("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")]
@@ -110,6 +116,33 @@ def test_a_dask_cluster_that_loses_a_worker(assets, tmp_path, cluster):
     assert {path: path.stat().st_ino for path in early} == early
 
 
+@pytest.mark.parametrize("cluster", [0], indirect=True)
+def test_a_task_under_which_a_worker_dies_is_taken_apart(assets, tmp_path, cluster, monkeypatch):
+    from distributed import Client
+
+    from hybrid_quad.batch_jobs import dask_engine
+
+    address, workers = cluster
+    monkeypatch.setattr(dask_engine, "_TASKS_PER_THREAD", 1)
+    plan = BatchPlan(output=str(tmp_path / "out"))
+    listed = list_assets([str(assets(10))], {"quads": 60}, plan, lambda _: [])
+    assert [len(task) for task in dask_engine.tasks_of(listed, 2)] == [5, 5]
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=60)
+
+    def kill() -> None:
+        wait_for(lambda: finished(tmp_path / "out") > 1 and len(running(tmp_path / "out")) == 2)
+        workers[0].kill()
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    found = list(dask_engine.run_on_dask(listed, plan, address))
+    killer.join()
+    assert workers[0].wait() != 0
+    assert sorted(status.asset for status in found) == [asset.name for asset in listed]
+    assert {status.status for status in found} == {"ok"}
+
+
 def test_no_cluster_is_said(assets, tmp_path, capfd):
     pytest.importorskip("distributed")
     from hybrid_quad.batch_jobs import dask_engine
@@ -136,7 +169,7 @@ def test_openjd_runs_the_template(root, assets, tmp_path, program):
     openjd = shutil.which("openjd", path=f"{Path(sys.executable).parent}:{os.environ.get('PATH', '')}")
     if openjd is None:
         pytest.skip("openjd-cli is not installed")
-    out, listed, count = tmp_path / "out", tmp_path / "list.json", 5
+    out, listed, count = tmp_path / "out", tmp_path / "list.jsonl", 5
     main(["batch", str(assets(count)), "--output", str(out), "--quads", "60", "--write-list", str(listed), "--quiet"])
     values = {"JobList": listed, "Output": out, "Assets": f"0-{count - 1}", "ChunkSize": 2, "Program": program}
     template = root / "farm" / "openjd" / "hybrid_quad_batch.yaml"
@@ -184,7 +217,7 @@ def test_the_flamenco_job_compiles_to_tasks_that_run(root, assets, tmp_path, pro
     node = shutil.which("node")
     if node is None:
         pytest.skip("Node is not installed")
-    out, listed, count = tmp_path / "out", tmp_path / "list.json", 5
+    out, listed, count = tmp_path / "out", tmp_path / "list.jsonl", 5
     main(["batch", str(assets(count)), "--output", str(out), "--quads", "60", "--write-list", str(listed), "--quiet"])
     (tmp_path / "stub.js").write_text(STUB)
     settings = {"job_list": str(listed), "output": str(out), "assets": "0-4", "chunk_size": 2, "program": str(program)}

@@ -15,14 +15,19 @@ from .run_asset import BatchFault, run_asset
 
 _RETRIES = 3  # after an error of a worker's machine
 _PATIENCE = 30  # seconds to reach the scheduler
-_AHEAD = 4  # assets for each thread of the cluster that wait their turn
+_AHEAD = 4  # tasks for each thread of the cluster that wait their turn
+# A task costs the scheduler and this process some milliseconds, so those of large batches are of several assets, in turn: as
+# many as leave every thread this many tasks, so that all end at about the same time.
+_TASKS_PER_THREAD = 50
+_MOST_IN_TASK = 20
 
 
 def run_on_dask(assets: Sequence[Asset], plan: BatchPlan, address: str) -> Generator[AssetStatus, None, None]:
     """Runs assets on a cluster, and gives the status of each as soon as it is there.
 
-    A worker that dies takes its worker processes along; Dask gives its assets to others, where those that were finished
-    are found to be so. An asset under which one worker after the other dies is lost: the next start runs it again.
+    A worker that dies takes its worker processes along; Dask gives its tasks to others, where assets that were finished
+    are found to be so. A task under which one worker after the other dies is taken apart. An asset alone under which they do
+    is lost: the next start runs it again.
 
     Parameters
     ----------
@@ -48,40 +53,53 @@ def run_on_dask(assets: Sequence[Asset], plan: BatchPlan, address: str) -> Gener
         raise BatchFault(f"no Dask scheduler at {address}: {error}") from error
     with client:
         _require_same_version(client)
-        remaining = iter(assets)
-        waiting: dict[str, Asset] = {}
+        threads = _threads(client)
+        remaining = iter(tasks_of(assets, threads))
+        waiting: dict[str, Sequence[Asset]] = {}
         running: Any = as_completed(loop=client.loop)
 
-        def submit(asset: Asset) -> None:
-            future = client.submit(
-                run_asset, asset, plan, key=f"hybrid-quad-{asset.name}", retries=_RETRIES, pure=False
-            )
-            waiting[future.key] = asset
+        def submit(task: Sequence[Asset]) -> None:
+            key = f"hybrid-quad-{len(task)}-{task[0].name}"
+            future = client.submit(_run_in_turn, task, plan, key=key, retries=_RETRIES, pure=False)
+            waiting[future.key] = task
             running.add(future)
 
         try:
-            for first in islice(remaining, _ahead(client)):
+            for first in islice(remaining, _AHEAD * threads):
                 submit(first)
             for future in running:
-                asset = waiting.pop(future.key)
+                task = waiting.pop(future.key)
                 if (following := next(remaining, None)) is not None:
                     submit(following)
                 try:
-                    status = future.result()
+                    yield from future.result()
                 except KilledWorker as error:
-                    status = _lost(asset, plan, str(error))
+                    if len(task) == 1:
+                        yield _lost(task[0], plan, str(error))
+                    else:
+                        for asset in task:
+                            submit([asset])
                 except BatchFault:
                     raise
                 except Exception as error:
-                    raise BatchFault(f"{asset.name}: the cluster cannot run it: {error}") from error
-                if status is not None:
-                    yield status
+                    raise BatchFault(f"{task[0].name}: the cluster cannot run it: {error}") from error
         finally:
             client.cancel(list(running.futures), force=True)
 
 
-def _ahead(client: Any) -> int:
-    return int(_AHEAD * max(1, sum(client.nthreads().values())))
+def tasks_of(assets: Sequence[Asset], threads: int) -> list[Sequence[Asset]]:
+    """Assets in their order, one or several a task."""
+    size = min(_MOST_IN_TASK, max(1, len(assets) // (_TASKS_PER_THREAD * threads)))
+    return [assets[first : first + size] for first in range(0, len(assets), size)]
+
+
+def _run_in_turn(assets: Sequence[Asset], plan: BatchPlan) -> list[AssetStatus]:
+    """What a task does, on a worker."""
+    return [status for asset in assets if (status := run_asset(asset, plan)) is not None]
+
+
+def _threads(client: Any) -> int:
+    return max(1, int(sum(client.nthreads().values())))
 
 
 def _require_same_version(client: Any) -> None:

@@ -1,20 +1,20 @@
-"""Job files: a CSV or JSON list of inputs with settings of their own."""
+"""Job files: a CSV or JSON list of inputs with settings of their own; JSON also one object a line."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TextIO
 
 from ..core.mesh_io import replacing
 from .asset import Asset
 from .settings import unknown_names
 
-JOB_SUFFIXES = (".csv", ".json")
+LINES = ".jsonl"  # of which a part is read without the rest
+JOB_SUFFIXES = (".csv", ".json", LINES)
 _NOT_SETTINGS = ("input", "name", "object")
 
 
@@ -32,7 +32,7 @@ class Row(NamedTuple):
 
 
 def read_job_file(path: Path) -> list[Row]:
-    """Rows of a CSV file with a header, or of a JSON list of objects.
+    """Rows of a CSV file with a header, of a JSON list of objects, or of a file with a JSON object a line.
 
     Raises
     ------
@@ -43,25 +43,47 @@ def read_job_file(path: Path) -> list[Row]:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise JobFileError(f"{path}: cannot be read: {error}") from error
-    rows = _rows_of_csv(path, text) if path.suffix.lower() == ".csv" else _rows_of_json(path, text)
-    return [_row(path, number, row) for number, row in rows]
+    read = {".csv": _rows_of_csv, LINES: _rows_of_lines}.get(path.suffix.lower(), _rows_of_json)
+    return [_row(path, number, row) for number, row in read(path, text)]
+
+
+def read_some_lines(path: Path, ranges: Sequence[tuple[int, int]]) -> list[Row]:
+    """Rows of a `LINES` file whose numbers, from 0, are in some ranges with both ends; the others are not looked at.
+
+    Raises
+    ------
+    JobFileError
+        As :func:`read_job_file` does.
+    """
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            chosen = [line for number, line in _numbered(file) if any(a <= number <= b for a, b in ranges)]
+    except (OSError, UnicodeDecodeError) as error:
+        raise JobFileError(f"{path}: cannot be read: {error}") from error
+    return [_row(path, where, row) for where, row in _rows_of_lines(path, "\n".join(chosen))]
 
 
 def write_job_file(path: Path, assets: Iterable[Asset]) -> None:
     """Writes assets as a JSON job file with absolute paths, so that every machine takes the same ones in the same order.
+
+    One object a line where the name ends in `LINES`.
 
     Raises
     ------
     MeshFileError
         If it cannot be written.
     """
-    rows = []
-    for asset in assets:
-        values = asdict(asset)
-        named = {"input": values["source"], "name": values["name"], "object": values["object_name"]}
-        rows.append({key: value for key, value in {**named, **values["settings"]}.items() if value != ""})
+    rows = (_as_row(asset) for asset in assets)
     with replacing(path) as file:
-        file.write((json.dumps(rows, indent=1) + "\n").encode())
+        if path.suffix.lower() == LINES:
+            file.writelines((json.dumps(row) + "\n").encode() for row in rows)
+        else:
+            file.write((json.dumps(list(rows), indent=1) + "\n").encode())
+
+
+def _as_row(asset: Asset) -> dict[str, Any]:
+    named = {"input": asset.source, "name": asset.name, "object": asset.object_name}
+    return {key: value for key, value in {**named, **asset.settings}.items() if value != ""}
 
 
 def _rows_of_csv(path: Path, text: str) -> list[tuple[str, dict[str, Any]]]:
@@ -77,6 +99,24 @@ def _rows_of_json(path: Path, text: str) -> list[tuple[str, dict[str, Any]]]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise JobFileError(f'{path}: must be a list of objects, as [{{"input": "a.obj", "quads": 500}}]')
     return [(f"entry {number}", row) for number, row in enumerate(rows)]
+
+
+def _rows_of_lines(path: Path, text: str) -> list[tuple[str, dict[str, Any]]]:
+    rows = []
+    for number, line in _numbered(io.StringIO(text)):
+        try:
+            row = json.loads(line)
+        except ValueError as error:
+            raise JobFileError(f"{path}: no JSON object in a line: {line.strip()[:100]!r}: {error}") from error
+        if not isinstance(row, dict):
+            raise JobFileError(f"{path}: no JSON object in a line: {line.strip()[:100]!r}")
+        rows.append((f"entry {number}", row))
+    return rows
+
+
+def _numbered(file: TextIO) -> Iterator[tuple[int, str]]:
+    """Lines that are not empty, and their numbers from 0."""
+    return enumerate(line for line in file if not line.isspace())
 
 
 def _row(path: Path, where: str, row: dict[str, Any]) -> Row:

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
 from .asset import Asset, BatchPlan, files_of
+from .asset_range import ranges_of
 from .input_paths import BLEND, expand
-from .job_file import JOB_SUFFIXES, JobFileError, Row, read_job_file
+from .job_file import JOB_SUFFIXES, LINES, JobFileError, Row, read_job_file, read_some_lines
 from .settings import SettingError, Settings, canonical, merged
 
 ListObjects = Callable[[Path], list[str]]
@@ -60,6 +61,41 @@ def list_assets(inputs: Sequence[str], defaults: Settings, plan: BatchPlan, list
     if not assets:
         raise JobFileError("there is nothing to do: no mesh and no object was found")
     assets = _with_own_names(assets)
+    _require_safe(assets, plan)
+    return assets
+
+
+def is_list_of_lines(inputs: Sequence[str]) -> bool:
+    """Whether the inputs are one job file whose lines can be counted without looking at what they name."""
+    return len(inputs) == 1 and Path(inputs[0]).suffix.lower() == LINES and Path(inputs[0]).is_file()
+
+
+def list_lines(text: str, chosen: str, defaults: Settings, plan: BatchPlan, list_objects: ListObjects) -> list[Asset]:
+    """Assets of some lines of a job file as ``--write-list`` makes it: one asset a line, under a name of its own.
+
+    The time that it takes does not depend on how many assets the other lines name.
+
+    Parameters
+    ----------
+    text : str
+        Of the job file.
+    chosen : str
+        Numbers of lines, see :func:`.asset_range.ranges_of`.
+
+    Raises
+    ------
+    JobFileError
+        As :func:`list_assets` does, and where a line has no name, or does not stand for one asset.
+    ValueError
+        If `chosen` is no list of numbers.
+    """
+    path, output = Path(text).absolute(), Path(plan.output)
+    assets = []
+    for row in read_some_lines(path, ranges_of(chosen)):
+        found = list(_assets_of_row(row, path.parent, defaults, output, list_objects))
+        if len(found) != 1 or not row.name:
+            raise JobFileError(f"{path}: {row.input!r} is not one asset with a name; freeze the list by --write-list")
+        assets += found
     _require_safe(assets, plan)
     return assets
 

@@ -7,7 +7,7 @@ import io
 import json
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,7 @@ class Line:
     Attributes
     ----------
     status : AssetStatus
+        Without settings and command, and of its report only the warnings: a summary is of a million assets too.
     figures : dict
         Values of `FIGURES`; None where there are none.
     asked_quads : int or None
@@ -73,7 +74,8 @@ def collect(assets: Iterable[Asset], plan: BatchPlan) -> list[Line]:
         if status is None:
             status = AssetStatus(asset.name, asset.source, asset_status.PENDING, asset.object_name)
         figures = {name: _found(status.report, path) for name, path in FIGURES.items()}
-        lines.append(Line(status, figures, _asked(status)))
+        kept = replace(status, report={"warnings": status.warnings}, settings={}, limits={}, command=[])
+        lines.append(Line(kept, figures, _asked(status)))
     return lines
 
 
@@ -96,16 +98,20 @@ def write_summary(folder: Path, lines: Sequence[Line]) -> None:
     MeshFileError
         If they cannot be written.
     """
-    rows = [line.as_row() for line in lines]
-    whole = {"version": __version__, "assets": len(lines), "statuses": counts(lines), "lines": rows}
+    head = {"version": __version__, "assets": len(lines), "statuses": counts(lines)}
     with replacing(folder / "summary.json") as file:
-        file.write((json.dumps(whole, indent=1) + "\n").encode())
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(rows[0]) if rows else ["asset"], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({**row, "warnings": " | ".join(row["warnings"])} for row in rows)
+        # Line by line, as the whole would take some times its size of memory.
+        file.write((json.dumps(head, indent=1).removesuffix("\n}") + ',\n "lines": [').encode())
+        for place, line in enumerate(lines):
+            file.write((("," if place else "") + "\n  " + json.dumps(line.as_row())).encode())
+        file.write(b"\n ]\n}\n")
     with replacing(folder / "summary.csv") as file:
-        file.write(text.getvalue().encode())
+        text = io.TextIOWrapper(file, "utf-8", newline="", write_through=True)
+        writer = csv.DictWriter(text, list(lines[0].as_row()) if lines else ["asset"], lineterminator="\n")
+        writer.writeheader()
+        for row in (line.as_row() for line in lines):
+            writer.writerow({**row, "warnings": " | ".join(row["warnings"])})
+        text.detach()  # `replacing` closes the file
 
 
 def _found(report: Any, path: Sequence[str]) -> Any:

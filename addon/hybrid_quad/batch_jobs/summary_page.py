@@ -12,7 +12,9 @@ from ..core.mesh_io import replacing
 from . import asset_status
 from .summary import Line, counts
 
-MOST_PICTURES = 2000  # a browser shows a page of some tens of megabytes, not of gigabytes
+# A browser shows a page of some tens of megabytes, not of gigabytes.
+MOST_PICTURES = 2000
+MOST_CARDS = 10000
 
 _STYLE = """
 body { font: 14px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 1500px; padding: 0 1em; color: #222; background: #fff; }
@@ -28,7 +30,7 @@ dt { color: #666; } dd { margin: 0; text-align: right; } ul { margin: 6px 0; pad
 
 
 def write_page(folder: Path, lines: Sequence[Line]) -> None:
-    """Writes ``summary.html``: failures first, then the rest in their order.
+    """Writes ``summary.html``: failures first, then the rest in their order, as far as a browser can show them.
 
     Raises
     ------
@@ -37,7 +39,7 @@ def write_page(folder: Path, lines: Sequence[Line]) -> None:
     """
     ordered = sorted(lines, key=lambda line: line.status.status == asset_status.OK)
     cards, shown = [], 0
-    for line in ordered:
+    for line in ordered[:MOST_CARDS]:
         picture = _picture(folder, line) if shown < MOST_PICTURES else ""
         shown += bool(picture)
         cards.append(_card(line, picture))
@@ -53,6 +55,11 @@ def _page(lines: Sequence[Line], cards: Sequence[str], shown: int) -> str:
     left_out = (
         f'<p class="quiet">Pictures of the first {shown} of {drawn} are in this page.</p>' if shown < drawn else ""
     )
+    if len(cards) < len(lines):
+        left_out += (
+            f'<p class="quiet">This page shows {len(cards)} of {len(lines)} assets, those without a result first; '
+            "summary.csv and summary.json have all.</p>"
+        )
     quads = sum(line.figures["quads"] or 0 for line in lines if line.status.status == asset_status.OK)
     hours = sum(line.status.seconds for line in lines) / 3600
     return (

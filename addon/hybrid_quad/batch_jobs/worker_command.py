@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from ..core.python_programs import python_program
 from .asset import Asset, BatchPlan
 from .settings import Settings, Value, as_arguments
 from .worker_process import PACKAGE_PARENT
@@ -36,7 +36,7 @@ def command_of(asset: Asset, plan: BatchPlan, folder: Path) -> list[str]:
     if plan.pictures:
         words += ["--picture", str(folder / PICTURE)]
     if not asset.object_name:
-        return [sys.executable, "-m", "hybrid_quad", "remesh", asset.source, result, *words]
+        return [python_program(), "-m", "hybrid_quad", "remesh", asset.source, result, *words]
     blender = blender_command(plan.blender, asset.source)
     return [*blender, "--object", asset.object_name, "--output", result, "--only-result", *words]
 

@@ -11,6 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..core import native
+
 if sys.platform == "linux":
     import resource
 
@@ -122,8 +124,8 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """That of this process, with the package where the worker's Python finds it."""
-    paths = [str(PACKAGE_PARENT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    """That of this process, with the package, and its compiled part, where the worker's Python finds them."""
+    paths = [str(PACKAGE_PARENT), *filter(None, [native.folder_of_wheel(), os.environ.get("PYTHONPATH")])]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 

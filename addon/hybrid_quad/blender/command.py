@@ -51,8 +51,8 @@ def unregister() -> None:
 def main(arguments: Sequence[str]) -> int:
     """Remeshes one object of the open file, saves the file under another name, and returns the exit status.
 
-    Nothing is written unless the run succeeds, except a report that says why it did not. Where the first word is ``batch``,
-    the rest is that of the command ``hybrid-quad batch``.
+    Nothing is written unless the run succeeds, except a report that says why it did not. Where the first word is ``batch``
+    or ``case``, the rest is that of the command ``hybrid-quad batch`` or ``case``.
 
     Parameters
     ----------
@@ -62,6 +62,8 @@ def main(arguments: Sequence[str]) -> int:
     if arguments[:1] == ["batch"]:
         program = bpy.app.binary_path  # none where Blender is a Python module
         return package_main([*arguments, *(["--blender", program] if program and "--blender" not in arguments else [])])
+    if arguments[:1] == ["case"]:
+        return package_main(arguments)
     try:
         options = _parser().parse_args(list(arguments))
     except SystemExit as stop:  # argparse has printed usage or help

@@ -25,7 +25,7 @@ def add_to(commands: Any) -> None:
         "inputs",
         nargs="+",
         metavar="INPUT",
-        help="folder, pattern in quotes, mesh file, .blend file (all its mesh objects), or job file: .csv or .json with the "
+        help="folder, pattern in quotes, mesh file, .blend file (all its mesh objects), or job file: .csv, .json or .jsonl with the "
         "columns input, name, object and any settings",
     )
     parser.add_argument("--output", required=True, metavar="DIR", help="folder for results, status files and summary")
@@ -42,7 +42,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--range", metavar="A-B", help="only these assets of the list, counted from 0; writes no summary"
     )
-    parser.add_argument("--write-list", metavar="FILE.json", help="only write the list of assets, as a job file")
+    parser.add_argument(
+        "--write-list",
+        metavar="FILE.jsonl",
+        help="only write the list of assets, as a job file: .jsonl, of which --range reads its part only, or .json",
+    )
     parser.add_argument("--summary-only", action="store_true", help="only write the summary of what has been run")
     parser.add_argument(
         "--fail-above", type=float, metavar="PERCENT", help="exit with status 1 if more than this share has no result"

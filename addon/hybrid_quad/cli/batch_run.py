@@ -16,7 +16,7 @@ from ..batch_jobs.asset_status import AssetStatus
 from ..batch_jobs.blend_objects import object_lister
 from ..batch_jobs.engine import run_locally
 from ..batch_jobs.job_file import JobFileError, write_job_file
-from ..batch_jobs.job_list import list_assets
+from ..batch_jobs.job_list import is_list_of_lines, list_assets, list_lines
 from ..batch_jobs.run_asset import BatchFault
 from ..batch_jobs.settings import KINDS, canonical
 from ..core import native, picture
@@ -44,19 +44,15 @@ def run_batch(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     plan = _plan(arguments)
+    if arguments.range is not None and not (arguments.write_list or arguments.summary_only):
+        return exit_codes.OK if _run_all(_chosen(arguments, plan), plan, arguments) else exit_codes.CANCELLED
     assets = list_assets(arguments.inputs, _defaults(arguments), plan, object_lister(plan))
     if arguments.write_list:
         write_job_file(Path(arguments.write_list), assets)
         if not arguments.quiet:
             say(f"{arguments.write_list}: {len(assets)} assets")
         return exit_codes.OK
-    chosen = assets if arguments.range is None else _chosen(assets, arguments.range)
-    interrupted = False
-    if not arguments.summary_only:
-        native.load()  # no worker could do without it
-        interrupted = not _run_all(chosen, plan, arguments)
-    if arguments.range is not None:
-        return exit_codes.CANCELLED if interrupted else exit_codes.OK
+    interrupted = not arguments.summary_only and not _run_all(assets, plan, arguments)
     return _summarize(assets, plan, arguments, interrupted)
 
 
@@ -89,15 +85,20 @@ def _defaults(arguments: argparse.Namespace) -> dict[str, Any]:
         raise remesh_command.UsageProblem(str(error)) from error
 
 
-def _chosen(assets: Sequence[Asset], text: str) -> list[Asset]:
+def _chosen(arguments: argparse.Namespace, plan: BatchPlan) -> list[Asset]:
+    """The assets of ``--range``."""
+    defaults, objects = _defaults(arguments), object_lister(plan)
     try:
-        return in_range(assets, text)
+        if is_list_of_lines(arguments.inputs):
+            return list_lines(arguments.inputs[0], arguments.range, defaults, plan, objects)
+        return in_range(list_assets(arguments.inputs, defaults, plan, objects), arguments.range)
     except ValueError as error:
         raise remesh_command.UsageProblem(f"--range: {error}") from error
 
 
 def _run_all(assets: Sequence[Asset], plan: BatchPlan, arguments: argparse.Namespace) -> bool:
     """Whether all assets have been run; False after an interruption."""
+    native.load()  # no worker could do without it
     with BatchProgress(len(assets), arguments.quiet) as progress:
         statuses = _engine(assets, plan, arguments)
         with contextlib.closing(statuses):

@@ -13,7 +13,7 @@ from types import FrameType
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
-from . import batch_command, check_command, exit_codes, remesh_command
+from . import batch_command, case_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
 
 
@@ -53,7 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(
             f"internal error: {kind}{error}\n"
             "This is a bug of hybrid-quad, not of your mesh, and nothing was written. Please report it with the mesh, "
-            f"the version ({__version__}) and this command:\n  hybrid-quad {shlex.join(given)}"
+            f"the version ({__version__}) and this command:\n  hybrid-quad {shlex.join(given)}\n"
+            "hybrid-quad case packs all of that into one file, and leaves names out if asked."
         )
         return exit_codes.BUG
 
@@ -77,4 +78,5 @@ def _parser() -> argparse.ArgumentParser:
     remesh_command.add_to(commands)
     check_command.add_to(commands)
     batch_command.add_to(commands)
+    case_command.add_to(commands)
     return parser

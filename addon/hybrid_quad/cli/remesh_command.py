@@ -17,7 +17,7 @@ from ..core.parent_process import end_with_stdin
 from ..core.part_files import write_polygons
 from ..core.remesh import RemeshResult, remesh_with_options
 from ..core.remesh_part import PartRemesh
-from ..core.strokes import KINDS, Stroke, joined_lines
+from ..core.strokes import KINDS, Stroke, joined_lines, kind_of_name
 from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say
@@ -280,12 +280,9 @@ def _remesh(
 
 def _strokes(arguments: argparse.Namespace) -> list[Stroke]:
     """The lines of a file, each of the kind that its object's name or the option says."""
-
-    def kind_of(name: str) -> str:
-        named = name.lower().partition("_")
-        return named[0] if named[1] and named[0] in KINDS else arguments.guide_kind
-
-    lines = [(kind_of(name), line) for name, line in mesh_io.read_polylines(arguments.guides)]
+    lines = [
+        (kind_of_name(name, arguments.guide_kind), line) for name, line in mesh_io.read_polylines(arguments.guides)
+    ]
     return [
         Stroke(line, arguments.guide_strength, kind)
         for kind in KINDS

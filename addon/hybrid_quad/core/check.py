@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import native
 from .mesh_arrays import FacesLike, IntArray, as_edges, as_polygons, as_vertices, edges_without_face
+from .mesh_objects import MeshLike, vertices_and_faces
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +64,17 @@ class Defect:
 
 
 def check(
-    vertices: npt.ArrayLike, faces: FacesLike, *, edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None
+    vertices: npt.ArrayLike | MeshLike,
+    faces: FacesLike | None = None,
+    *,
+    edges: npt.ArrayLike | Iterable[Sequence[int]] | None = None,
 ) -> list[Defect]:
     """Finds what is wrong with a mesh, without changing anything.
 
     Parameters
     ----------
-    vertices : (n, 3) float
-        Positions.
+    vertices : (n, 3) float, or a mesh
+        Positions; without `faces`, a mesh of trimesh, meshio or alike, see :func:`mesh_arrays`.
     faces : (m, k) int, or a sequence of sequences of int
         0-based vertices of each polygon.
     edges : (k, 2) int, optional
@@ -81,8 +85,8 @@ def check(
     list of Defect
         One for each kind of defect; empty for a sound mesh.
     """
-    polygons = as_polygons(faces)
-    points = as_vertices(vertices)
+    positions, corners = vertices_and_faces(vertices, faces)
+    points, polygons = as_vertices(positions), as_polygons(corners)
     rows = native.load().check(points, polygons.sizes, polygons.vertices)
     defects = [Defect.from_native(row) for row in rows]
     loose = edges_without_face(as_edges(edges), polygons, len(points))

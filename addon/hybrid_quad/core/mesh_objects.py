@@ -2,15 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from .mesh_arrays import FloatArray, Polygons, as_polygons, as_vertices
+from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_polygons, as_vertices
+
+if TYPE_CHECKING:
+    import meshio
+    import trimesh
 
 
-def mesh_arrays(mesh: Any) -> tuple[FloatArray, Polygons]:
+class MeshOfFaces(Protocol):
+    """Anything with vertices and faces, as ``trimesh.Trimesh``."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
+
+
+class MeshOfCells(Protocol):
+    """Anything with points and blocks of cells, as ``meshio.Mesh``."""
+
+    @property
+    def points(self) -> Any: ...
+
+    @property
+    def cells(self) -> Any: ...
+
+
+MeshLike = MeshOfFaces | MeshOfCells
+
+
+def mesh_arrays(mesh: MeshLike) -> tuple[FloatArray, Polygons]:
     """Vertices and faces of a mesh of another package, as :func:`hybrid_quad.remesh` takes them.
 
     Parameters
@@ -31,11 +58,39 @@ def mesh_arrays(mesh: Any) -> tuple[FloatArray, Polygons]:
     ValueError
         If its cells are volumes or curved, which are no polygons of their vertices.
     """
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-        return as_vertices(mesh.vertices), as_polygons(np.asarray(mesh.faces))
-    if hasattr(mesh, "points") and hasattr(mesh, "cells"):
-        return as_vertices(_in_space(np.asarray(mesh.points, np.float64))), _polygons_of_cells(mesh.cells)
+    found: Any = mesh
+    if hasattr(found, "vertices") and hasattr(found, "faces"):
+        return as_vertices(found.vertices), as_polygons(np.asarray(found.faces))
+    if hasattr(found, "points") and hasattr(found, "cells"):
+        return as_vertices(_in_space(np.asarray(found.points, np.float64))), _polygons_of_cells(found.cells)
     raise TypeError(f"{type(mesh).__name__} has neither vertices and faces nor points and cells")
+
+
+def vertices_and_faces(vertices: npt.ArrayLike | MeshLike, faces: FacesLike | None) -> tuple[npt.ArrayLike, FacesLike]:
+    """The two as they are, or, without faces, those of the mesh that is given in the vertices' place.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`mesh_arrays` does.
+    """
+    if faces is None:
+        return mesh_arrays(cast(MeshLike, vertices))
+    return cast(npt.ArrayLike, vertices), faces
+
+
+def meshio_of_quads(vertices: FloatArray, quads: IntArray) -> meshio.Mesh:
+    """A ``meshio.Mesh`` with one block of quads; needs meshio."""
+    import meshio
+
+    return meshio.Mesh(vertices, [("quad", quads)])
+
+
+def trimesh_of_quads(vertices: FloatArray, quads: IntArray) -> trimesh.Trimesh:
+    """A ``trimesh.Trimesh`` with the vertices in their order and each quad split in two; needs trimesh."""
+    import trimesh
+
+    return trimesh.Trimesh(vertices, quads, process=False)
 
 
 def _in_space(points: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from importlib import import_module, util
 from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
 from types import ModuleType
 
 _PACKAGE = __package__.rpartition(".")[0]
@@ -16,6 +17,13 @@ _WHEEL = "hybrid_quad_native"
 def is_there() -> bool:
     """Whether the module is installed for this Python; it may still fail to load."""
     return util.find_spec(_NAME) is not None or _spec_in_wheel() is not None
+
+
+def folder_of_wheel() -> str:
+    """The folder in which the package ``hybrid_quad_native`` lies, for other processes to find it; ``""`` where there is none."""
+    wheel = util.find_spec(_WHEEL)
+    places = wheel.submodule_search_locations if wheel is not None else None
+    return str(Path(next(iter(places))).parent) if places else ""
 
 
 def load() -> ModuleType:

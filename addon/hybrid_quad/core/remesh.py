@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,7 @@ from .mesh_arrays import (
     require_edges,
     surface_area,
 )
+from .mesh_objects import MeshLike, meshio_of_quads, trimesh_of_quads, vertices_and_faces
 from .options import MOST_QUADS, RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
 from .strokes import (
@@ -37,6 +38,10 @@ from .strokes import (
     stronger_of,
 )
 from .wishes import DENSITY_BOUNDS, native_wishes
+
+if TYPE_CHECKING:
+    import meshio
+    import trimesh
 
 ProgressCallback = Callable[[str, float], object]
 CancelCallback = Callable[[], bool]
@@ -73,10 +78,18 @@ class RemeshResult:
     vertex_kinds: npt.NDArray[np.uint8]
     report: dict[str, Any]
 
+    def to_meshio(self) -> meshio.Mesh:
+        """The quads as a ``meshio.Mesh``, which writes many formats; needs meshio."""
+        return meshio_of_quads(self.vertices, self.quads)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """The quads, each split in two, as a ``trimesh.Trimesh`` with the same vertices; needs trimesh."""
+        return trimesh_of_quads(self.vertices, self.quads)
+
 
 def remesh(
-    vertices: npt.ArrayLike,
-    faces: FacesLike,
+    vertices: npt.ArrayLike | MeshLike,
+    faces: FacesLike | None = None,
     *,
     quads: int = 5000,
     edge_length: float | None = None,
@@ -114,8 +127,8 @@ def remesh(
 
     Parameters
     ----------
-    vertices : (n, 3) float
-        Positions.
+    vertices : (n, 3) float, or a mesh
+        Positions; without `faces`, a mesh of trimesh, meshio or alike, see :func:`mesh_arrays`.
     faces : (m, 3) or (m, 4) int, or a sequence of sequences of int
         0-based vertices of each polygon. Any surface will do: open, of any genus, with several components.
     quads : int
@@ -227,8 +240,7 @@ def remesh(
         memory_limit=memory_limit,
     )
     return remesh_with_options(
-        vertices,
-        faces,
+        *vertices_and_faces(vertices, faces),
         options,
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,

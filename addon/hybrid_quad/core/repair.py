@@ -9,6 +9,7 @@ import numpy.typing as npt
 from . import native
 from .check import Defect
 from .mesh_arrays import FacesLike, FloatArray, IntArray, as_polygons, as_vertices
+from .mesh_objects import MeshLike, vertices_and_faces
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +36,13 @@ class Repaired:
     defects: list[Defect]
 
 
-def repair(vertices: npt.ArrayLike, faces: FacesLike) -> Repaired:
+def repair(vertices: npt.ArrayLike | MeshLike, faces: FacesLike | None = None) -> Repaired:
     """Repairs a mesh as :func:`hybrid_quad.remesh` does before anything else.
 
     Parameters
     ----------
-    vertices : (n, 3) float
-        Positions.
+    vertices : (n, 3) float, or a mesh
+        Positions; without `faces`, a mesh of trimesh, meshio or alike, see :func:`mesh_arrays`.
     faces : (m, k) int, or a sequence of sequences of int
         0-based vertices of each polygon.
 
@@ -55,7 +56,8 @@ def repair(vertices: npt.ArrayLike, faces: FacesLike) -> Repaired:
     InputError
         If the faces are no surface that can be repaired; names the elements.
     """
-    polygons = as_polygons(faces)
-    found = native.load().repair(as_vertices(vertices), polygons.sizes, polygons.vertices)
+    positions, corners = vertices_and_faces(vertices, faces)
+    polygons = as_polygons(corners)
+    found = native.load().repair(as_vertices(positions), polygons.sizes, polygons.vertices)
     found["defects"] = [Defect.from_native(row) for row in found["defects"]]
     return Repaired(**found)

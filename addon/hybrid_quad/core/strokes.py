@@ -103,6 +103,12 @@ def guides_from_strokes(
     return crosses.directions()
 
 
+def kind_of_name(name: str, usual: str) -> str:
+    """The kind that the name of an object or line begins with, as in ``"loop_eye"``; `usual` where it names none."""
+    first, underscore, _ = name.lower().partition("_")
+    return first if underscore and first in KINDS else usual
+
+
 def checked_strokes(strokes: Iterable[Stroke | npt.ArrayLike] | None) -> list[Stroke]:
     """Strokes with their points as arrays.
 

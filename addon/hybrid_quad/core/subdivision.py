@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import native
 from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices
+from .mesh_objects import MeshLike, vertices_and_faces
 from .options import usable_threads
 
 INFINITELY_SHARP = 10.0
@@ -39,8 +40,8 @@ class Subdivided:
 
 
 def subdivide(
-    vertices: npt.ArrayLike,
-    faces: FacesLike,
+    vertices: npt.ArrayLike | MeshLike,
+    faces: FacesLike | None = None,
     *,
     levels: int = 2,
     limit: bool = True,
@@ -54,8 +55,8 @@ def subdivide(
 
     Parameters
     ----------
-    vertices : (n, 3) float
-        Positions.
+    vertices : (n, 3) float, or a mesh
+        Positions; without `faces`, a mesh of trimesh, meshio or alike, see :func:`mesh_arrays`.
     faces : (m, k) int, or a sequence of sequences of int
         0-based vertices of each polygon.
     levels : int
@@ -90,7 +91,8 @@ def subdivide(
     """
     if not 1 <= levels <= MOST_LEVELS:
         raise ValueError(f"levels must be 1 to {MOST_LEVELS}")
-    points, polygons, creases = as_vertices(vertices), as_polygons(faces), as_edges(crease_edges)
+    positions, corners = vertices_and_faces(vertices, faces)
+    points, polygons, creases = as_vertices(positions), as_polygons(corners), as_edges(crease_edges)
     sharp = np.zeros(0, np.int32) if sharp_vertices is None else np.asarray(sharp_vertices, np.int32)
     if sharp.ndim != 1:
         raise ValueError("sharp_vertices must be one-dimensional")

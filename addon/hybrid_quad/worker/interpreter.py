@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+
+from ..core.python_programs import python_programs
 
 CHILD = Path(__file__).with_name("child.py")
 
@@ -42,19 +43,3 @@ def worker_command(host: str = "", candidates: Sequence[Path] | None = None) -> 
             "--",
         ]
     raise FileNotFoundError("no Python program was found that could do the work in a process of its own")
-
-
-def python_programs() -> Iterator[Path]:
-    """Where the running Python's own program should be.
-
-    In the folder of its library first: Blender's ``sys.executable`` may be another Python that happens to stand in the
-    PATH, where a distribution built Blender with the system's. Blender for Windows and macOS has the same layout,
-    ``python/bin``, as for Linux; a virtual environment on Windows has ``Scripts``.
-    """
-    prefix, version = Path(sys.prefix), f"python{sys.version_info.major}.{sys.version_info.minor}"
-    if sys.platform == "win32":
-        yield from (prefix / "bin" / "python.exe", prefix / "Scripts" / "python.exe", prefix / "python.exe")
-    else:
-        yield from (prefix / "bin" / version, prefix / "bin" / "python3")
-    if sys.executable and Path(sys.executable).name.startswith("python"):
-        yield Path(sys.executable)
