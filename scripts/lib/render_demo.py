@@ -17,7 +17,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from stage import FEATURES, FEWER, MORE, SURFACE, Stage, save_side_by_side, unit
+from field_crosses import add_field
+from stage import FEATURES, SURFACE, Stage, save_side_by_side
 
 import hybrid_quad
 from hybrid_quad.blender import edge_marks
@@ -26,8 +27,6 @@ from hybrid_quad.blender.remesh_task import prepare_task
 from hybrid_quad.core.mesh_io import write_mesh
 from hybrid_quad.core.remesh import remesh_with_options
 from hybrid_quad.core.snapshots import Snapshot
-
-CROSS = (0.02, 0.10, 0.20)
 
 
 class FieldSeen(Exception):
@@ -97,40 +96,11 @@ def find_field(task) -> Snapshot | None:
 
 def draw_field(stage: Stage, field: Snapshot, edge: float, path: Path) -> Path:
     """Crosses about as far apart as the quads are large; cones as balls."""
-    triangles = field.face_vertices.reshape(-1, 3)
-    corners = field.points[triangles]
-    middles = corners.mean(axis=1)
-    normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    shown = spread(middles, 1.2 * edge)
     stage.clear()
-    stage.add_surface(field.points, list(triangles), SURFACE)
-    centre = middles[shown] + 0.03 * edge * normals[shown]
-    for name in ("u direction", "v direction"):
-        step = 0.5 * edge * unit(field.face_vectors[name][shown])
-        ends = np.concatenate([centre - step, centre + step])
-        pairs = np.stack([np.arange(len(shown)), np.arange(len(shown)) + len(shown)], axis=1)
-        stage.add_wires(ends, pairs, CROSS, 0.05 * edge)
+    stage.add_surface(field.points, list(field.face_vertices.reshape(-1, 3)), SURFACE)
+    add_field(stage, field, edge)
     stage.add_wires(field.points, field.lines, FEATURES, 0.05 * edge)
-    index = field.vertex_values["cone index"]
-    stage.add_balls(field.points[index > 0], FEWER, 0.22 * edge)
-    stage.add_balls(field.points[index < 0], MORE, 0.22 * edge)
     return stage.render(path)
-
-
-def spread(points: np.ndarray, distance: float) -> list[int]:
-    """Indices of as many of the points as fit with no two closer than `distance`."""
-    chosen: list[int] = []
-    in_cell: dict[tuple[int, ...], list[int]] = {}
-    for index, cell in enumerate(np.floor(points / distance).astype(int).tolist()):
-        near = (
-            other
-            for offset in np.ndindex(3, 3, 3)
-            for other in in_cell.get((cell[0] + offset[0] - 1, cell[1] + offset[1] - 1, cell[2] + offset[2] - 1), ())
-        )
-        if all(np.linalg.norm(points[other] - points[index]) >= distance for other in near):
-            chosen.append(index)
-            in_cell.setdefault(tuple(cell), []).append(index)
-    return chosen
 
 
 main()

@@ -52,12 +52,12 @@ python_environment() {
   fi
 }
 
-# developer_tools: ruff, mypy and clang-format in .venv, in the versions that pyproject.toml pins.
-developer_tools() {
+# pinned_packages EXTRA: the packages of an extra in .venv, in the versions that pyproject.toml pins.
+pinned_packages() {
   local wanted there tool missing=()
   wanted=$("$VENV/bin/python" -c '
 import sys, tomllib
-print(*tomllib.load(open(sys.argv[1], "rb"))["project"]["optional-dependencies"]["dev"])' "$ROOT/pyproject.toml")
+print(*tomllib.load(open(sys.argv[1], "rb"))["project"]["optional-dependencies"][sys.argv[2]])' "$ROOT/pyproject.toml" "$1")
   there=$("$VENV/bin/pip" list --format=freeze)
   for tool in $wanted; do
     grep -qxF "$tool" <<<"$there" || missing+=("$tool")
@@ -66,6 +66,9 @@ print(*tomllib.load(open(sys.argv[1], "rb"))["project"]["optional-dependencies"]
   say "installing Python packages into .venv: ${missing[*]}"
   "$VENV/bin/pip" install -q "${missing[@]}"
 }
+
+# developer_tools: ruff, mypy and clang-format in .venv.
+developer_tools() { pinned_packages dev; }
 
 # build_package: hybrid_quad in .venv, and its compiled part beside the add-on's sources, where Blender finds it.
 build_package() {
