@@ -40,7 +40,7 @@ TEST(Mend, TurnsFoldedQuadsOver) {
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
   Smoother smoother(piece, SmootherOptions{});
-  EXPECT_GT(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}), 0);
+  EXPECT_GT(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}).mended, 0);
   const QuadMesh after = piece.mesh.extract();
   EXPECT_TRUE(violations_of(after).empty());
   EXPECT_LT(flawed_quads(after, sheet.index, {1.0}).size(), before.size());
@@ -50,7 +50,7 @@ TEST(Mend, LeavesGoodMeshesAlone) {
   Sheet sheet;
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   Smoother smoother(piece, SmootherOptions{});
-  EXPECT_EQ(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}), 0);
+  EXPECT_EQ(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}).mended, 0);
   EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
 }
 

@@ -98,7 +98,11 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     report.inverted_after = untangle(piece, smoother, context);
     if (report.inverted_after > kManyInverted && report.inverted_after > kWorthwhile * before) break;
   }
-  if (options.rings == nullptr) report.mended = mend_flawed(piece, smoother, whole, options.enough_area, context);
+  if (options.rings == nullptr) {
+    const MendReport mended = mend_flawed(piece, smoother, whole, options.enough_area, context);
+    report.mended = mended.mended;
+    report.placed = mended.placed;
+  }
   quads = piece.mesh.extract();
   return report;
 }

@@ -28,7 +28,7 @@ class Mender {
     return find_places(q) || change_neighbours(q, kLikely) || change_neighbours(q, kFar) || fill_anew(q);
   }
 
-  bool is_folded(int q) const { return measure_.lacks_shape(q) > 0; }
+  bool is_poor(int q) const { return measure_.lacks_shape(q) > 0; }
 
   bool find_places(int q) {
     for (int i = 0; i < kTrialsOfPlaces; ++i) search_.count_trial();
@@ -106,7 +106,8 @@ class Mender {
 
 }  // namespace
 
-int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area, const RunContext& context) {
+MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
+                       const RunContext& context) {
   constexpr int kRounds = 3;
   Mender mender(piece, smoother, whole, enough_area);
   // Rounds over all quads, until one changes nothing.
@@ -121,8 +122,10 @@ int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole,
     }
     return changes;
   };
-  const int mended = in_rounds([&](int q) { return mender.is_flawed(q) && mender.mend(q); });
-  return mended + in_rounds([&](int q) { return mender.is_folded(q) && mender.find_places(q); });
+  MendReport report;
+  report.mended = in_rounds([&](int q) { return mender.is_flawed(q) && mender.mend(q); });
+  report.placed = in_rounds([&](int q) { return mender.is_poor(q) && mender.find_places(q); });
+  return report;
 }
 
 }  // namespace hybrid_quad

@@ -6,10 +6,17 @@
 
 namespace hybrid_quad {
 
+/// What was done, in numbers of changes.
+struct MendReport {
+  int mended = 0;  ///< that only flawed quads called for
+  int placed = 0;  ///< around quads of poor shape
+};
+
 /// The last resort for quads that are flawed (quality.h) when all else is done: other positions or other neighbours, whatever
-/// valences and shapes suffer, if only fewer quads around are flawed. Then other positions where quads are folded or nearly so.
+/// valences and shapes suffer, if only fewer quads around are flawed. Then other positions around quads whose
+/// scaled Jacobian is below FlawMeasure::kFair.
 /// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
-/// \returns number of changes made
-int mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area, const RunContext& context);
+MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
+                       const RunContext& context);
 
 }  // namespace hybrid_quad

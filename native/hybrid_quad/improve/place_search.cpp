@@ -61,14 +61,8 @@ class PlaceSearch {
   std::vector<int> movable(const std::vector<int>& vertices) const {
     std::vector<int> out;
     for (const int v : vertices)
-      if (!piece_.mesh.is_pinned(v) && (piece_.mesh.is_free(v) ? piece_.face[v] >= 0 : slides(v))) out.push_back(v);
+      if (!piece_.mesh.is_pinned(v) && (piece_.mesh.is_free(v) ? piece_.face[v] >= 0 : piece_.may_slide(v))) out.push_back(v);
     return out;
-  }
-
-  bool slides(int v) const {
-    const int curve = piece_.mesh.anchor(v);
-    return piece_.mesh.kind(v) == VertexKind::kCurve && curve >= 0 && curve < static_cast<int>(piece_.curves.size()) &&
-           piece_.curves[curve].length() > 0;
   }
 
   std::vector<int> with_ring(const std::vector<int>& vertices) const {

@@ -250,17 +250,12 @@ GuidePull Smoother::guide_pull(int v, double size) const {
   return sum;
 }
 
-bool Smoother::may_slide(int v) const {
-  const int curve = piece_.mesh.anchor(v);
-  return curve >= 0 && curve < static_cast<int>(piece_.curves.size()) && piece_.curves[curve].length() > 0;
-}
-
 double Smoother::move(int v) {
   if (piece_.mesh.valence(v) == 0 || piece_.mesh.is_pinned(v)) return 0;
   const double size = edge_size(v);
   if (!(size > 0)) return 0;
   if (piece_.mesh.is_free(v)) return piece_.face[v] >= 0 ? move_free(v, size) / size : 0;
-  if (piece_.mesh.kind(v) == VertexKind::kCurve && may_slide(v)) return move_on_curve(v, size) / size;
+  if (piece_.may_slide(v)) return move_on_curve(v, size) / size;
   return 0;
 }
 

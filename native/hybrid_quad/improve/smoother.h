@@ -55,7 +55,6 @@ class Smoother {
   double move(int v);
   double move_free(int v, double size);
   double move_on_curve(int v, double size);
-  bool may_slide(int v) const;
 
   Workpiece& piece_;
   SmootherOptions options_;

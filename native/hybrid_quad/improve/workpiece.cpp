@@ -201,4 +201,10 @@ double Workpiece::weighted_gap(int v, int direction) const {
   return curve.closed() && distance <= 0 ? distance + curve.weighted_length() : distance;
 }
 
+bool Workpiece::may_slide(int v) const {
+  const int curve = mesh.anchor(v);
+  return mesh.kind(v) == VertexKind::kCurve && curve >= 0 && curve < static_cast<int>(curves.size()) &&
+         curves[curve].length() > 0;
+}
+
 }  // namespace hybrid_quad

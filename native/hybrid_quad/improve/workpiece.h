@@ -42,6 +42,8 @@ struct Workpiece {
   /// Arc length from a curve vertex to its neighbour along the curve (+1) or against it (-1), weighted by curvature.
   double weighted_gap(int v, int direction) const;
   double gap(int v, int direction) const;
+  /// Whether v is on a curve that has a length.
+  bool may_slide(int v) const;
 
   int region_count = 0;
 

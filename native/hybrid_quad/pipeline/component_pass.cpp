@@ -317,6 +317,7 @@ class ComponentRemesher {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
     const ImproveReport report = clock_.measure("improve", [&] { return finishing_.improve(extraction.mesh, context); });
     extraction.repairs.mended_places += report.mended;
+    extraction.repairs.poor_places += report.placed;
     extraction.repairs.restored_quads += report.restored_quads;
     extraction.flawed = report.flawed_after;
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));

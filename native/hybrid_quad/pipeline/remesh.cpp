@@ -151,6 +151,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   fitted_quads += other.fitted_quads;
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
+  poor_places += other.poor_places;
   opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;

@@ -86,6 +86,7 @@ struct RepairRecord {
   int fitted_quads = 0;          ///< quads put in or taken out one by one for the number
   int opened_straight_quads = 0; ///< quads with three sides on one feature
   int mended_places = 0;         ///< changes that only flawed quads called for
+  int poor_places = 0;  ///< around quads of poor shape, whose vertices were placed anew
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
 
