@@ -11,7 +11,7 @@ struct QuadFrame {
   Vector3 normal = Vector3::Zero();     ///< unit; agrees with the input below the quad
   Vector3 reference = Vector3::Zero();  ///< unit normal of the input below the quad
   double aspect = 1;                    ///< weight of sides 0 and 2 against sides 1 and 3
-  double area = 0;                      ///< of the corner parallelograms around
+  double area = 0;                      ///< that corner parallelograms are to have
 };
 
 /// Energy of one corner with sides e1, e2 (to the next and to the previous corner), and its derivatives:
@@ -20,8 +20,6 @@ struct QuadFrame {
 /// "Foldover-free maps in 50 lines of code"). With w the ratio of the sides' lengths to some power, f is smallest for
 /// right angles at that ratio.
 struct CornerEnergy {
-  static constexpr double kAreaWeight = 0.05;
-
   double value = 0;              ///< f
   double by_length = 0;          ///< df/dL, L = w |e1|^2 + |e2|^2 / w
   double by_area = 0;            ///< df/dD
@@ -34,20 +32,20 @@ struct CornerEnergy {
     *slope = root > 0 ? chi / root : 0.0;
     return chi;
   }
-  static double value_of(double length, double d, double area, double eps) {
+  static double value_of(double length, double d, double area, double eps, double area_weight) {
     double slope;
     const double chi = regularized(d, eps * area, &slope);
-    const double f = length / (2 * chi) + 0.5 * kAreaWeight * (chi / area + area / chi);
+    const double f = length / (2 * chi) + 0.5 * area_weight * (chi / area + area / chi);
     return f * f;
   }
-  CornerEnergy(double length, double d, double area, double eps) {
+  CornerEnergy(double length, double d, double area, double eps, double area_weight) {
     double slope;
     const double chi = regularized(d, eps * area, &slope);
     const double inverse = 1 / chi;
-    value = 0.5 * length * inverse + 0.5 * kAreaWeight * (chi / area + area * inverse);
+    value = 0.5 * length * inverse + 0.5 * area_weight * (chi / area + area * inverse);
     by_length = 0.5 * inverse;
-    const double by_chi = -0.5 * length * inverse * inverse + 0.5 * kAreaWeight * (1 / area - area * inverse * inverse);
-    const double by_chi_chi = (length + kAreaWeight * area) * inverse * inverse * inverse;
+    const double by_chi = -0.5 * length * inverse * inverse + 0.5 * area_weight * (1 / area - area * inverse * inverse);
+    const double by_chi_chi = (length + area_weight * area) * inverse * inverse * inverse;
     by_area = by_chi * slope;
     by_length_area = -0.5 * inverse * inverse * slope;
     by_area_area = by_chi_chi * slope * slope;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -32,6 +33,7 @@ class EditMesh {
 
   int vertex_count() const { return static_cast<int>(positions.size()); }
   int quad_count() const { return static_cast<int>(quads_.size()); }  ///< dead ones too
+  int live_quads() const { return static_cast<int>(std::count(alive_.begin(), alive_.end(), 1)); }
   bool alive(int q) const { return alive_[q] != 0; }
   const Quad& quad(int q) const { return quads_[q]; }
   const std::vector<int>& quads_at(int v) const { return incident_[v]; }

@@ -55,6 +55,8 @@ SmootherOptions smoothing_of(const ImproveOptions& options, int threads) {
   SmootherOptions smoothing;
   smoothing.chord_spring = options.chord_spring;
   smoothing.aspect_power = options.aspect_power;
+  smoothing.area_weight = options.area_weight;
+  smoothing.asked_lengths = options.asked_lengths;
   smoothing.guides = options.guides;
   smoothing.rings = options.rings;
   smoothing.threads = threads;
@@ -183,14 +185,14 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
   Smoother smoother(piece, smoothing_of(options, context.threads));
   smoother.update_frames(true);
   const FlawMeasure measure(piece, whole ? *whole : index, options.enough_area);
-  const int before = live_quads(piece.mesh);
+  const int before = piece.mesh.live_quads();
   for (int now = before, last = -1; now != number.wanted && now != last;) {
     last = now;
     const int step = std::max(1, static_cast<int>(kMostInOneGo * now));
     const QuadNumber next{std::clamp(number.wanted, now - step, now + step), number.lengths};
     take_out_quads(piece, smoother, measure, next, context);
     put_in_quads(piece, smoother, measure, next, context);
-    now = live_quads(piece.mesh);
+    now = piece.mesh.live_quads();
     smooth_without_flaws(piece, smoother, measure, kSweeps, context);
   }
   mend_flawed(piece, smoother, measure.surface(), options.enough_area, context);

@@ -17,6 +17,8 @@ struct ImproveOptions {
   double chord_spring = 5.0;       ///< pulls curve vertices to equal chord error, more where curves bend
   bool fit = true;                 ///< one offset pass that halves the distance; vertices then straddle the surface
   double aspect_power = 0.7;       ///< 0: quads become squares; 1: they keep whatever aspect they have
+  double area_weight = 0.05;       ///< of areas near those asked for, or else near those around
+  const std::vector<double>* asked_lengths = nullptr;  ///< #V of the input: edge lengths that quads are to keep to
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured

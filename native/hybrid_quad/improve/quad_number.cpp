@@ -85,7 +85,7 @@ class TakingOut {
         number_(number),
         context_(context),
         search_(piece.mesh, kEffort),
-        quads_(live_quads(piece.mesh)) {}
+        quads_(piece.mesh.live_quads()) {}
 
   int run() {
     const int before = quads_;
@@ -222,7 +222,7 @@ class TakingOut {
 class PuttingIn {
  public:
   PuttingIn(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, const QuadNumber& number, const RunContext& context)
-      : piece_(piece), smoother_(smoother), measure_(measure), number_(number), context_(context), quads_(live_quads(piece.mesh)) {}
+      : piece_(piece), smoother_(smoother), measure_(measure), number_(number), context_(context), quads_(piece.mesh.live_quads()) {}
 
   int run() {
     const int before = quads_;
@@ -296,12 +296,6 @@ class PuttingIn {
 };
 
 }  // namespace
-
-int live_quads(const EditMesh& mesh) {
-  int count = 0;
-  for (int q = 0; q < mesh.quad_count(); ++q) count += mesh.alive(q);
-  return count;
-}
 
 int take_out_quads(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, const QuadNumber& number,
                    const RunContext& context) {

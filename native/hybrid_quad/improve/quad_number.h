@@ -19,7 +19,4 @@ int take_out_quads(Workpiece& piece, Smoother& smoother, const FlawMeasure& meas
 int put_in_quads(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, const QuadNumber& number,
                  const RunContext& context);
 
-/// Quads that are there.
-int live_quads(const EditMesh& mesh);
-
 }  // namespace hybrid_quad

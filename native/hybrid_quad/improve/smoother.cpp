@@ -30,6 +30,7 @@ struct Smoother::Derivatives {
 };
 
 Smoother::Smoother(Workpiece& piece, const SmootherOptions& options) : piece_(piece), options_(options) {
+  if (options.asked_lengths != nullptr) asked_areas_ = AskedAreas(piece.input, *options.asked_lengths);
   update_frames(true);
 }
 
@@ -88,6 +89,7 @@ void Smoother::update_shape(int q) {
 }
 
 void Smoother::update_area(int q) {
+  constexpr double kMostChange = 4;
   double sum = 0;
   for (const int v : piece_.mesh.quad(q)) {
     double around = 0;
@@ -95,11 +97,15 @@ void Smoother::update_area(int q) {
     sum += around / piece_.mesh.valence(v);
   }
   frames_[q].area = 0.25 * sum;
+  if (asked_areas_.empty() || centre_face_[q] < 0) return;
+  // What is far too small or too large gets there in several sweeps.
+  frames_[q].area = std::clamp(asked_areas_.at(centre_face_[q]), frames_[q].area / kMostChange, kMostChange * frames_[q].area);
 }
 
 void Smoother::update_frames(bool with_references) {
   std::vector<int> all(piece_.mesh.quad_count());
   std::iota(all.begin(), all.end(), 0);
+  asked_areas_.set_number_of_quads(piece_.mesh.live_quads());
   update_frames(all, with_references);
 }
 
@@ -166,11 +172,11 @@ double Smoother::energy(int v, const Vector3& at) const {
     const Vector3& far = p[corner[(k + 2) & 3]];
     const Vector3 beyond_forth = far - p[corner[(k + 1) & 3]], beyond_back = far - p[corner[(k + 3) & 3]];
     const double forth2 = forth.squaredNorm(), back2 = back.squaredNorm();
-    sum += CornerEnergy::value_of(w * forth2 + inverse * back2, frame.normal.dot(forth.cross(back)), frame.area, eps_);
+    sum += CornerEnergy::value_of(w * forth2 + inverse * back2, frame.normal.dot(forth.cross(back)), frame.area, eps_, options_.area_weight);
     sum += CornerEnergy::value_of(inverse * beyond_forth.squaredNorm() + w * forth2,
-                                  -frame.normal.dot(beyond_forth.cross(forth)), frame.area, eps_);
+                                  -frame.normal.dot(beyond_forth.cross(forth)), frame.area, eps_, options_.area_weight);
     sum += CornerEnergy::value_of(inverse * back2 + w * beyond_back.squaredNorm(),
-                                  -frame.normal.dot(back.cross(beyond_back)), frame.area, eps_);
+                                  -frame.normal.dot(back.cross(beyond_back)), frame.area, eps_, options_.area_weight);
   }
   return sum;
 }
@@ -181,7 +187,7 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
   // length_slope: dL/dx; length_curvature: d2L/dx2, a multiple of the identity; area_slope: dD/dx (D is linear in x).
   const auto add = [&](double length, double d, const QuadFrame& frame, const Vector3& length_slope, double length_curvature,
                        const Vector3& area_slope) {
-    const CornerEnergy c(length, d, frame.area, eps_);
+    const CornerEnergy c(length, d, frame.area, eps_, options_.area_weight);
     sum += c.value * c.value;
     double l[2], a[2], g[2];
     for (int i = 0; i < dimensions; ++i) {

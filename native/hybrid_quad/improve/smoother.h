@@ -4,6 +4,7 @@
 
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/frame_field/guide_map.h"
+#include "hybrid_quad/improve/asked_areas.h"
 #include "hybrid_quad/improve/corner_energy.h"
 #include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/improve/workpiece.h"
@@ -13,6 +14,8 @@ namespace hybrid_quad {
 struct SmootherOptions {
   double chord_spring = 5;       ///< pull of curve vertices to equal chord error, more where curves bend
   double aspect_power = 0.7;     ///< 0: squares; 1: rectangles of any aspect
+  double area_weight = 0.05;     ///< of areas near those asked for, or else near those around, against the corners' shape
+  const std::vector<double>* asked_lengths = nullptr;  ///< #V of the input, of edges; may be null
   const GuideMap* guides = nullptr;  ///< on the input, may be null
   double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape
   const RingPulls* rings = nullptr;  ///< may be null
@@ -60,6 +63,7 @@ class Smoother {
   SmootherOptions options_;
   double eps_ = 1e-3;
   std::vector<QuadFrame> frames_;
+  AskedAreas asked_areas_;
   std::vector<double> own_area_;
   std::vector<int> centre_face_;
 };

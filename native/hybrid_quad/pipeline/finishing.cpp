@@ -1,5 +1,6 @@
 #include "hybrid_quad/pipeline/finishing.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hybrid_quad/assemble/feature_chains.h"
@@ -19,12 +20,17 @@ constexpr double kEnough = 2.5e-5, kNoDoubt = 6e-5;
 Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options)
     : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)) {
   constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
+  constexpr double kWeightOfSizes = 3;
   improve_.fit = options.fit;
   improve_.target_length = std::sqrt(plan.mesh.total_area() / plan.quads);
   improve_.enough_area = kNoDoubt * whole.mesh().total_area();
   improve_.guides = &guides_;
   if (wishes.most_stretch > 1) improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;
+  if (!wishes.density.empty()) {
+    improve_.asked_lengths = &plan.target;
+    improve_.area_weight = std::max(improve_.area_weight, kWeightOfSizes * options.size_fidelity);
+  }
 }
 
 ImproveReport Finishing::improve(QuadMesh& mesh, const RunContext& context) const {
