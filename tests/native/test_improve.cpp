@@ -436,6 +436,36 @@ TEST(Improve, FitLowersTheDistance) {
             0.7 * surface_distance(quads, *surface.index, RunContext{}).mean);
 }
 
+TEST(Improve, AreasComeNearTheAskedOnes) {
+  const Surface surface(test::icosphere(4));
+  QuadMesh start = sphere(12);
+  bind(start, surface);
+  const auto asked_at = [](const Vector3& p) { return 0.1 * (1 + 0.25 * p.z() / p.norm()); };
+  std::vector<double> asked;
+  for (const Vector3& p : surface.mesh.positions()) asked.push_back(asked_at(p));
+  const auto spread = [&](const QuadMesh& quads) {  // of the logarithms of areas over asked areas
+    double sum = 0, squares = 0;
+    for (const auto& q : quads.quads) {
+      const auto& p = quads.positions;
+      const double area = 0.5 * (p[q[2]] - p[q[0]]).cross(p[q[3]] - p[q[1]]).norm();
+      const double ratio = std::log(area / std::pow(asked_at(0.25 * (p[q[0]] + p[q[1]] + p[q[2]] + p[q[3]])), 2));
+      sum += ratio;
+      squares += ratio * ratio;
+    }
+    const double n = static_cast<double>(quads.quads.size());
+    return std::sqrt(squares / n - sum * sum / (n * n));
+  };
+  ImproveOptions options;
+  QuadMesh even = start, sized = start;
+  improve(even, surface, options);
+  options.asked_lengths = &asked;
+  options.area_weight = 1.5;
+  improve(sized, surface, options);
+  EXPECT_TRUE(violations_of(sized).empty());
+  EXPECT_GT(shape_quality(sized).scaled_jacobian_min, 0.5);
+  EXPECT_LT(spread(sized), 0.6 * spread(even));
+}
+
 TEST(Improve, ThinStripKeepsItsTwoSides) {
   // Curves that run close to each other: one row of quads, its border vertices far out of place.
   const Surface surface(test::flat_grid(60, 2, 1, 0.02));
