@@ -651,6 +651,25 @@ TEST(ChainArcLengths, ClosedCurveIsCyclic) {
   EXPECT_NEAR(around, ring.length(), 1e-9);
 }
 
+TEST(CurveGeometry, ACircleBendsAlikeHoweverItsPointsAreSpaced) {
+  std::vector<Vector3> points;
+  double angle = 0;
+  for (int i = 0; i < 36; ++i) {
+    points.emplace_back(std::cos(angle), std::sin(angle), 0);
+    angle += (i % 5 < 2 ? 1.5 : 1) * 2 * M_PI / 43.5;
+  }
+  points.push_back(points[0]);
+  CurveGeometry ring(points, true);
+  ring.weigh_by_curvature(0.5, 20);
+  double least = 1e300, most = 0;
+  for (int i = 0; i < 360; ++i) {
+    const double density = ring.weight_density(ring.length() * i / 360);
+    least = std::min(least, density);
+    most = std::max(most, density);
+  }
+  EXPECT_LT(most, 1.05 * least);
+}
+
 TEST(SurfaceWalk, FindsWhatTheTreeFindsOnASphere) {
   const Surface surface(test::icosphere(4));
   for (int i = 0; i < 100; ++i) {

@@ -25,7 +25,7 @@ class CurveGeometry {
   Vector3 tangent(double s) const;  ///< unit, in the curve's direction; zero on a curve without length
 
   /// Weighs arc length by sqrt(1 + weight h curvature), so that equal weighted lengths have about equal chord error.
-  /// Curvature is measured over a window of 0.8 h.
+  /// Curvature is measured over a window of h, with corners cut, or it would depend on how many of them a window holds.
   void weigh_by_curvature(double h, double weight);
   double weighted_length() const { return weighted_.back(); }
   double weighted(double s) const;        ///< weighted length from the start to s
@@ -34,6 +34,9 @@ class CurveGeometry {
  private:
   int segment_at(double s) const;
   double turning(double from, double to) const;
+  /// The curve with its corners cut off as in Chaikin's subdivision, no farther from them than `reach`; positions on it are by
+  /// arc length of this one.
+  CurveGeometry with_cut_corners(double reach) const;
 
   std::vector<Vector3> points_;
   std::vector<double> arc_, weighted_;
