@@ -98,6 +98,25 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   EXPECT_EQ(features_for(16, all), 12u);
 }
 
+TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {
+  // The rim of a plate that is a hundredth of an edge length thick, and of one that is not.
+  const auto curves_of = [](double thickness, bool is_marked) {
+    const TriangleMesh plate = test::box(12, Vector3(4, 4, thickness));
+    MarkedEdges marked;
+    const FeatureGraph features = detect_features(plate, FeatureOptions{}, RunContext{});
+    for (int h = 0; is_marked && h < plate.halfedge_count(); ++h)
+      if (features.is_feature(h) && plate.opposite(h) < h) marked.ends.push_back({plate.from(h), plate.to(h)});
+    marked.guides.assign(marked.ends.size(), -1);
+    const ComponentPlan plan = plan_component(plate, 0.3, marked, {}, Wishes{}, RemeshOptions{}, RunContext{});
+    EXPECT_EQ(violations_of(plan.features, plan.mesh), std::vector<std::string>{});
+    EXPECT_EQ(plan.given_way > 0, plan.features.curves.size() < 12);
+    return plan.features.curves.size();
+  };
+  EXPECT_EQ(curves_of(0.1, false), 12u);
+  EXPECT_LT(curves_of(0.003, false), 12u);
+  EXPECT_EQ(curves_of(0.003, true), 12u);
+}
+
 TEST(CountBudget, WhatOneTakesTheOthersPay) {
   std::vector<ComponentPlan> plans{plan(test::icosphere(3), 0.3), plan(test::icosphere(3), 0.2)};
   const double wanted = plans[0].quads + plans[1].quads;

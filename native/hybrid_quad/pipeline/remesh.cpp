@@ -227,7 +227,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   for (const ComponentPlan& plan : plans) report.features_given_way += images * plan.given_way;
   if (report.features_given_way > 0)
     report.warnings.push_back(std::to_string(report.features_given_way) +
-                              " curves of edges by angle gave way to the number of quads: more quads, or marks, keep them");
+                              " curves of edges by angle gave way to the number of quads, or to others on top of them: more quads, or marks, keep them");
   const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
     report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");

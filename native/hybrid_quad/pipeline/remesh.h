@@ -141,7 +141,7 @@ struct RemeshReport {
   double singular_area_fraction = 0;     ///< part of the surface that Morse patches or fills cover
   PatchRecord patches;
   RepairRecord repairs;
-  int features_given_way = 0;            ///< feature curves by angle that gave way to the number of quads
+  int features_given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   EdgeLoopSummary edge_loops;

@@ -126,6 +126,21 @@ double crowding(const TriangleMesh& mesh, const FeatureGraph& features, double q
   return edges / quads;
 }
 
+/// Takes away the curves of which a half-edge does not remain.
+void take_features_away(ComponentPlan& plan, const std::vector<char>& remains) {
+  std::vector<char> gone(plan.features.curves.size(), 0);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && !remains[h]) gone[plan.features.halfedge_curve[h]] = 1;
+  plan.given_way += static_cast<int>(std::count(gone.begin(), gone.end(), 1));
+  plan.features = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+}
+
+/// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays.
+void merge_double_lines(ComponentPlan& plan, double length) {
+  constexpr double kGap = 0.05;
+  take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length));
+}
+
 /// Takes as few features away as make room. \returns whether any
 bool make_room(ComponentPlan& plan) {
   constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
@@ -134,20 +149,15 @@ bool make_room(ComponentPlan& plan) {
   std::vector<char> is_kept = plan.is_given;
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
     if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_kept[h] = 1;
-  FeatureGraph fewer;
   std::vector<char> remains;
   for (const double gap : kGaps) {
     remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
-    fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+    const FeatureGraph fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
     if (crowding(plan.mesh, fewer, plan.quads, length) <= kRoomy) break;
   }
-  std::vector<char> gone(plan.features.curves.size(), 0);
-  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
-    if (plan.features.is_feature(h) && !remains[h]) gone[plan.features.halfedge_curve[h]] = 1;
-  const int count = static_cast<int>(std::count(gone.begin(), gone.end(), 1));
-  plan.given_way += count;
-  plan.features = std::move(fewer);
-  return count > 0;
+  const int before = plan.given_way;
+  take_features_away(plan, remains);
+  return plan.given_way > before;
 }
 
 double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch) {
@@ -208,6 +218,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   }
   plan.corners = features.corners;
   plan.features = detect_features(plan.mesh, features, context);
+  if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density);
   if (!plan.guides.empty()) add_guide_corners(plan);
   plan.density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);

@@ -31,7 +31,7 @@ struct ComponentPlan {
   std::vector<CountedChain> asked_chains;  ///< edges of that mesh that are to get certain numbers of quads
   std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
   double least_ratio = 0;       ///< see FeatureSizeOptions
-  int given_way = 0;            ///< feature curves by angle that gave way to the number of quads
+  int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
 };
 
 /// Edges that are features whatever their angle.
