@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Finds all quads with a scaled Jacobian of zero or less in the results of a sweep, measures on the input why, and writes docs/exceptions.md.
+"""Finds all quads with a scaled Jacobian of zero or less in a sweep's results, measures on the input why, writes docs/exceptions.md.
 
     exceptions.py                      results of out/sweep; meshes that are not there are made again
     exceptions.py FILE ... --quads N   runs of these models instead, for a look: only prints the table
@@ -11,6 +11,7 @@ Blender and Pillow.
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import subprocess
 import sys
@@ -44,18 +45,25 @@ def main() -> int:
     (folder / "panels").mkdir(parents=True, exist_ok=True)
     kept = folder / "exceptions.jsonl"
     if arguments.fresh:
-        kept.unlink(missing_ok=True)
+        for old in (kept, *(folder / "panels").iterdir()):
+            old.unlink(missing_ok=True)
     done = {row["name"]: row for row in _rows(kept)}
     rows = []
     with kept.open("a") as file:
         for outcome, run, mesh in _exceptions(arguments, build, outcomes):
+            case = functools.cache(functools.partial(Case, outcome, run, mesh))  # not read where all is done
             if run.name not in done:
-                row = measured(outcome, run, mesh, folder / "panels")
-                file.write(json.dumps(row) + "\n")
+                done[run.name] = case().measured()
+                file.write(json.dumps(done[run.name]) + "\n")
                 file.flush()
-                done[run.name] = row
-            rows.append(done[run.name])
-            print(exceptions_page.line(done[run.name]), flush=True)
+            row = done[run.name]
+            for cause in exceptions_pictures.shown_causes(row["quads"]):
+                scene = folder / "panels" / exceptions_pictures.panel_name(run.name, cause)
+                if not scene.exists():
+                    worst = next(quad["quad"] for quad in row["quads"] if quad["cause"] == cause)
+                    np.savez_compressed(scene, **case().scene_at(worst))
+            rows.append(row)
+            print(exceptions_page.line(row), flush=True)
     if not arguments.files:
         sheets: dict[str, Path] = {}
         if arguments.blender:
@@ -70,44 +78,56 @@ def main() -> int:
     return int(any(quad["cause"] == OPEN for row in rows for quad in row["quads"]))
 
 
-def measured(outcome: Outcome, run: Run, mesh: Path, panels: Path) -> dict[str, Any]:
-    """What there is to say of one run: all its bad quads with their causes, and how often these hold at good ones.
+class Case:
+    """A run with what it was made of.
 
-    Leaves what its pictures need in `panels`.
+    Parameters
+    ----------
+    outcome : Outcome
+    run : Run
+    mesh : Path
+        The result.
     """
-    points, polygons = read_mesh(run.path)
-    surface = InputSurface(points, fan_triangles(polygons))
-    vertices, faces = read_mesh(mesh)
-    quads = faces.vertices.reshape(-1, 4)
-    length = float(np.sqrt(surface.area.sum() / run.quads))
-    lines = KeptLines(surface, line_edges(surface, SHARP_DEGREES[run.setting]), vertices, quads, length)
-    inspector = Inspector(surface, lines, vertices, quads, length)
-    shape = scaled_jacobian(vertices, quads)
-    bad = np.flatnonzero(shape <= 0)
-    found = []
-    for quad in bad[np.argsort(shape[bad])]:
-        at = inspector.measure(int(quad))
-        found.append({"quad": int(quad), "sj": round(float(shape[quad]), 4), "cause": at.cause, "at": at.as_json()})
-    good = np.flatnonzero(shape >= GOOD)
-    sample = np.random.default_rng(0).choice(good, min(OTHERS, len(good)), replace=False)
-    for cause in exceptions_pictures.shown_causes(found):
-        worst = next(quad["quad"] for quad in found if quad["cause"] == cause)
-        scene = exceptions_pictures.scene(surface, lines, vertices, quads, bad, worst, length)
-        np.savez_compressed(panels / exceptions_pictures.panel_name(run.name, cause), **scene)
-    return {
-        "name": run.name,
-        "model": run.model,
-        "asked": run.quads,
-        "setting": run.setting,
-        "got": len(quads),
-        "features_given_way": outcome.report.get("features_given_way", 0),
-        "repairs": {name: count for name, count in outcome.report.get("repairs", {}).items() if count},
-        "faces": len(surface.triangles),
-        "length": length,
-        "minimum": round(float(shape.min()), 4),
-        "quads": found,
-        "others": _shares([inspector.measure(int(quad)) for quad in sample]),
-    }
+
+    def __init__(self, outcome: Outcome, run: Run, mesh: Path) -> None:
+        self._outcome, self._run = outcome, run
+        points, polygons = read_mesh(run.path)
+        self._surface = InputSurface(points, fan_triangles(polygons))
+        self._vertices, faces = read_mesh(mesh)
+        self._quads = faces.vertices.reshape(-1, 4)
+        self._length = float(np.sqrt(self._surface.area.sum() / run.quads))
+        candidates = line_edges(self._surface, SHARP_DEGREES[run.setting])
+        self._lines = KeptLines(self._surface, candidates, self._vertices, self._quads, self._length)
+        self._shape = scaled_jacobian(self._vertices, self._quads)
+        self._bad = np.flatnonzero(self._shape <= 0)
+
+    def measured(self) -> dict[str, Any]:
+        """All bad quads with their causes, the worst first, and how often these hold at good ones."""
+        inspector = Inspector(self._surface, self._lines, self._vertices, self._quads, self._length)
+        found = []
+        for quad in self._bad[np.argsort(self._shape[self._bad])]:
+            at = inspector.measure(int(quad))
+            shape = round(float(self._shape[quad]), 4)
+            found.append({"quad": int(quad), "sj": shape, "cause": at.cause, "at": at.as_json()})
+        good = np.flatnonzero(self._shape >= GOOD)
+        sample = np.random.default_rng(0).choice(good, min(OTHERS, len(good)), replace=False)
+        return {
+            "name": self._run.name,
+            "model": self._run.model,
+            "asked": self._run.quads,
+            "setting": self._run.setting,
+            "got": len(self._quads),
+            "features_given_way": self._outcome.report.get("features_given_way", 0),
+            "faces": len(self._surface.triangles),
+            "minimum": round(float(self._shape.min()), 4),
+            "quads": found,
+            "others": _shares([inspector.measure(int(quad)) for quad in sample]),
+        }
+
+    def scene_at(self, quad: int) -> dict[str, np.ndarray]:
+        """For the picture of a quad."""
+        place = (self._surface, self._lines, self._vertices, self._quads, self._bad)
+        return exceptions_pictures.scene(*place, quad, self._length)
 
 
 def _shares(others: list[Measured]) -> dict[str, float]:

@@ -12,12 +12,12 @@ from exceptions_pictures import number_of
 from shape_causes import CAUSES, OPEN, Measured
 
 MEANING = {
-    causes.TIP: f"a worst corner of the quad sits in a corner of kept lines (features or the boundary) of less than {causes.ACUTE_DEGREES:.0f}°, "
-    "whose sine no quad there can exceed; the other quads around it are squeezed between the same two lines",
-    causes.LINES: f"two kept lines, or two parts of one, or two of their corners, are less than {causes.NEAR_LINES} edges from each other "
-    f"along a connected piece of surface, both within {causes.NEAR_LINES} edges of the quad: vertices have to be on both",
-    causes.FOLD: f"the surface's normals differ by more than {causes.FOLD_DEGREES:.0f}° within the radius of a quad, without a kept line between: "
-    "more than at any one right-angled edge",
+    causes.TIP: f"a worst corner of the quad sits in a corner of kept lines (features or the boundary) of less than "
+    f"{causes.ACUTE_DEGREES:.0f}°, whose sine no quad there can exceed; what is beside it is squeezed between the same two lines",
+    causes.LINES: f"two kept lines, or two parts of one, or two of their corners, are less than {causes.NEAR_LINES} edges apart on "
+    f"a connected piece of surface, within {causes.NEAR_LINES} edges of the quad: vertices have to be on both",
+    causes.FOLD: f"the surface's normals differ by more than {causes.FOLD_DEGREES:.0f}° within the radius of a quad, without a kept "
+    "line between: more than at any one right-angled edge",
     causes.NECK: f"a tube, hole, finger or pit with room for fewer than {causes.AROUND:.0f} edges around it",
     causes.SHEET: f"the surface's other side is less than {causes.THIN} edges away, and its rim less than one edge",
     OPEN: "none of these: the surface has room for a better quad, and it is this program that did not find it",
@@ -26,21 +26,22 @@ MEANING = {
 INTRODUCTION = """\
 # Badly shaped quads, and why
 
-Every result is checked to be a valid mesh ([Why the result is valid](guarantee.md)), but a valid quad may be concave or nearly a triangle: its
-scaled Jacobian, the smallest sine of its corners' angles, is then zero or less. This page lists every run of the benchmark
-([results](results.md)) in which that happens, with what the *input* is like at each such quad. It is written by one command
-([benchmarks/README.md](../benchmarks/README.md)), pictures included.
+Every result is checked to be a valid mesh ([Why the result is valid](guarantee.md)), but a valid quad may be concave or nearly a
+triangle: its scaled Jacobian, the smallest sine of its corners' angles, is then zero or less. This page lists every run of the
+benchmark ([results](results.md)) in which that happens, with what the *input* is like at each such quad. It is written by one
+command ([benchmarks/README.md](../benchmarks/README.md)), pictures included.
 
-Lengths are in *edges*: the side of a square with the area that each of the asked quads gets. Only measurements on the input surface
-decide, and the first cause of this list that holds is the one named:
+Lengths are in *edges*: the side of a square with the area that each of the asked quads gets. Only measurements on the input
+surface decide, and the first cause of this list that holds is the one named:
 """
 
 LIMITS = """\
 ## What this can and cannot say
 
-- A cause that holds shows that the input has detail smaller than a quad there. It does not prove that nothing better is possible: most quads at
-  such places have a good shape too. How often the same holds at quads of the same run with a scaled Jacobian of 0.3 or more (60 at random) is in the last
-  column; where that is nearly all of them, the whole model is below the size of its quads, and more quads are the remedy.
+- A cause that holds shows that the input has detail smaller than a quad there. It does not prove that nothing better is possible:
+  many quads at such places have a good shape. The last column of the table says how many of the quads with a scaled Jacobian of
+  0.3 or more (60 at random from the same run) have *no* cause; where these are few, the whole model is below the size of its quads,
+  and more quads are the remedy.
 - *Open* quads are faults of this program.
 - Lines count where the result's edges follow them. Features by angle that gave way to the number of quads do not.
 - "Edges around" is looked for at 1, 2, 3 and just under 4 edges, in balls around the quad as wide as a tube of that length around.
@@ -85,9 +86,9 @@ def page(rows: Sequence[dict[str, Any]], runs: int, sheets: dict[str, Path], fol
     if sheets:
         lines += ["## Pictures", ""]
         lines += [
-            "For each run its worst quad, and its worst open one. Left the input, right the edges of the quads there, two rings around; orange: "
-            "quads with a scaled Jacobian of zero or less; red: kept lines. Above each: model, asked quads, setting, the quad's scaled "
-            "Jacobian, what was measured.",
+            "For each run its worst quad, and its worst open one. Left the input, right the edges of the quads, two rings around; "
+            "orange: quads with a scaled Jacobian of zero or less; red: kept lines. Above each: model, asked quads, setting, the "
+            "quad's scaled Jacobian, what was measured.",
             "",
         ]
         for cause, picture in sheets.items():

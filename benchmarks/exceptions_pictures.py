@@ -68,7 +68,8 @@ def scene(
     weight = np.minimum(surface.area[close], unit**2) * (normals @ surface.normals[seed] > 0)
     turn = _upright((weight[:, None] * normals).sum(axis=0)) / unit
     shown = _rings(quads, worst)
-    pieces = _cut(surface.points[surface.edges[lines.is_line]], middle, ball.radius)
+    beside = lines.is_line & np.isin(surface.edge_faces, faces).any(axis=1)
+    pieces = _cut(surface.points[surface.edges[beside]], middle, ball.radius)
     used, triangles = np.unique(surface.triangles[faces], return_inverse=True)
     kept, cells = np.unique(quads[shown], return_inverse=True)
     return {

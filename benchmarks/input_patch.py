@@ -112,7 +112,7 @@ class InputSurface:
         return connected
 
     def euler_number(self, ball: Ball, seed: int) -> int:
-        """Of the connected part of the surface in a ball, cut off at its border: 1 for a disk, 0 for a ring, 2 for all of a closed ball.
+        """Of the connected part of the surface in a ball, cut off at its border: 1 for a disk, 0 for a ring, 2 for all of a sphere.
 
         Triangles cut by a ball are convex, so that it is faces - inner edges + inner vertices, of those that meet the ball.
         """

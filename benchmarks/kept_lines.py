@@ -118,7 +118,7 @@ class KeptLines:
         return np.array(found, np.int64)
 
     def gap(self, centre: FloatArray, chosen: IntArray) -> float:
-        """The smallest distance, in edge lengths, of points among `chosen` on two lines, or on parts of one that lie beside each other.
+        """Smallest distance, in edge lengths, of points among `chosen` on two lines, or on parts of one that lie beside each other.
 
         Infinite where there are none. Lines that join farther than LOOK_AROUND edges from `centre` count as two.
         """

@@ -123,7 +123,7 @@ class Inspector:
         )
 
     def place_of(self, corners: FloatArray) -> tuple[int, FloatArray]:
-        """The input's triangle at the quad's middle, and the point there: on the side that the quad is turned to, where there are two."""
+        """The input's triangle at the quad's middle, and the point there: on the side that the quad is turned to."""
         middle = corners.mean(axis=0)
         radius = float(np.linalg.norm(corners - middle, axis=1).max())
         faces, distance = self._surface.faces_in(Ball(middle, radius))
@@ -137,7 +137,7 @@ class Inspector:
         return seed, nearest_in_triangles(middle[None], self._surface.corners[[seed]])[0]
 
     def _at_corners(self, quad: int) -> tuple[float, float]:
-        """Degrees of the sharpest sector at the quad's worst corners, and the most that a quad gets at any of its vertices on lines."""
+        """Degrees of the sharpest sector at the quad's worst corners, and the most for one quad at any of its vertices on lines."""
         sines = corner_sines(self._vertices[self._quads[quad]])
         tip, most = math.inf, 0.0
         for vertex, is_worst in zip(self._quads[quad], sines <= sines.min() + SAME, strict=True):
@@ -192,7 +192,7 @@ class Inspector:
         return is_near
 
     def _around(self, middle: FloatArray, seed: int) -> float:
-        """Twice around a ball's radius is how long a tube's section is that just fits: a ball around a point of it, as wide as the tube."""
+        """A ball around a point of a tube holds all of its section from a radius of the tube's width on."""
         for edges in (1.0, 2.0, 3.0, AROUND - 0.01):
             if self._surface.euler_number(Ball(middle, edges / math.pi * self._length), seed) != 1:
                 return edges

@@ -1,5 +1,6 @@
 """Why quads are badly shaped: measured on surfaces that have one cause each. Edges are 1 long."""
 
+import itertools
 import json
 import subprocess
 import sys
@@ -86,7 +87,7 @@ def test_corners_of_a_line():
     points = [(x, y, 0) for x, y in [*outline, *top]]
     triangles = np.array([t for i in range(4) for t in ((i, i + 1, i + 6), (i, i + 6, i + 5))])
     chain = [(1, 0, 0), (2, 0, 0), (2.02, 0.3, 0), (2.04, 0, 0), (3, 0, 0)]
-    quads = [corner for a, b in zip(chain, chain[1:], strict=False) for corner in (a, b, (b[0], 1, 0), (a[0], 1, 0))]
+    quads = [corner for a, b in itertools.pairwise(chain) for corner in (a, b, (b[0], 1, 0), (a[0], 1, 0))]
     at = measured((points, triangles), quads)
     assert at.cause == causes.LINES
     assert at.corners == pytest.approx(0.04)
@@ -120,7 +121,7 @@ def test_a_hole_with_too_few_edges_around():
     small = measured((points * 0.4, faces), quad)
     assert small.cause == causes.NECK
     assert small.around == 2
-    assert measured((points * 3, faces), np.array(quad) + (1.3, 0, 0)).around == np.inf
+    assert measured((points * 3, faces), [(x + 1.3, y, z) for x, y, z in quad]).around == np.inf
 
 
 def test_euler_numbers_in_balls():
