@@ -27,7 +27,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--size", type=int, default=230, help="width of one of the two views in pixels")
-    parser.add_argument("--samples", type=int, default=10)
+    parser.add_argument("--samples", type=int, default=8)
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
     stage = Stage(_sphere(), arguments.size, arguments.samples, VIEW)
     temporary = Path(tempfile.mkdtemp())
@@ -51,10 +51,12 @@ def _draw_input(stage: Stage, scene: dict) -> None:
 
 
 def _draw_quads(stage: Stage, scene: dict) -> None:
-    """Only the bad ones as surfaces: elsewhere nothing hides them."""
+    """Only the bad ones as surfaces, so that nothing hides them, and with thick edges, as many have hardly any area."""
     stage.clear()
+    bad = scene["quads"][scene["is_bad"]]
     stage.add_wires(scene["vertices"], _edges(scene["quads"]), LINES, 0.01)
-    stage.add_surface(scene["vertices"], list(scene["quads"][scene["is_bad"]]), FEWER)
+    stage.add_surface(scene["vertices"], list(bad), FEWER)
+    stage.add_wires(scene["vertices"], _edges(bad), FEWER, 0.022)
     _add_lines(stage, scene)
 
 
