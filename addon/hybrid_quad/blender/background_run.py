@@ -29,10 +29,11 @@ class BackgroundRun:
         Called when :func:`current` does not give the run any more.
     """
 
-    def __init__(self, task: RemeshTask, obj: bpy.types.Object) -> None:
+    def __init__(self, task: RemeshTask, obj: bpy.types.Object, mode: str) -> None:
         self.task = task
         self.source = SourceTrack(obj)
         self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
+        self._mode = mode
         self.on_forget: Callable[[], object] = lambda: None
         self.worker = WorkerRun(
             task.request(),
@@ -83,7 +84,10 @@ class BackgroundRun:
         """Whether Blender is in a mode in which the result can go to its place."""
         if context.mode == "OBJECT":
             return True
-        return self.task.part is not None and context.mode == "EDIT_MESH" and context.object == self.source.find()
+        can_be_left = context.mode == self._mode == "SCULPT" or (
+            self.task.part is not None and context.mode == "EDIT_MESH"
+        )
+        return can_be_left and context.object == self.source.find()
 
     def require_same_mesh(self, obj: bpy.types.Object) -> None:
         """Raises InputError ``mesh_changed`` where a part's mesh is not the one any more that it is a part of."""
@@ -102,8 +106,13 @@ def current() -> BackgroundRun | None:
     return _current
 
 
-def start(task: RemeshTask, obj: bpy.types.Object) -> BackgroundRun:
+def start(task: RemeshTask, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:
     """Begins a run that :func:`current` gives from now on.
+
+    Parameters
+    ----------
+    mode : str
+        ``bpy.types.Context.mode`` in which the user asked for it. One asked for in Sculpt Mode can be placed there.
 
     Raises
     ------
@@ -112,7 +121,7 @@ def start(task: RemeshTask, obj: bpy.types.Object) -> BackgroundRun:
     """
     global _current
     assert _current is None
-    _current = BackgroundRun(task, obj)
+    _current = BackgroundRun(task, obj, mode)
     return _current
 
 

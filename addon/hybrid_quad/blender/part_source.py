@@ -12,7 +12,7 @@ from ..core.edge_borders import BoolArray
 from ..core.errors import InputError
 from ..core.remesh_part import PartChoice
 from .edge_marks import FACE_SET_ATTRIBUTE
-from .edit_mode import readable_mesh
+from .modes import readable_mesh
 from .mesh_source import MeshSource, linear_of, source_of
 from .transfer import buffers, layers, mask, shape_keys
 from .transfer.rest import Rest

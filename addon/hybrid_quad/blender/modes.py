@@ -1,4 +1,4 @@
-"""What happens to meshes whose owners are in Edit Mode, where these can't be exchanged or read in full."""
+"""What happens to meshes whose owners are in Edit Mode or Sculpt Mode, where these can't be exchanged or read in full."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ import bpy
 
 
 @contextlib.contextmanager
-def out_of_edit_mode(obj: bpy.types.Object) -> Iterator[None]:
-    """Leaves Edit Mode for a while if an object is in it; the object that is active then is in it afterwards."""
-    if obj.mode != "EDIT":
+def out_of(obj: bpy.types.Object, *modes: str) -> Iterator[None]:
+    """Leaves a mode for a while if the active object is in one of these; the object that is active then is in it afterwards."""
+    mode = obj.mode
+    if mode not in modes:
         yield
         return
     bpy.ops.object.mode_set(mode="OBJECT")
     try:
         yield
     finally:
-        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.object.mode_set(mode=mode)
 
 
 @contextlib.contextmanager
