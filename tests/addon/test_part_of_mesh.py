@@ -224,6 +224,18 @@ def set_face_attribute(obj, name, data_type, values) -> None:
     attribute.data.foreach_set("value", values)
 
 
+def test_a_face_set_is_picked():
+    obj = add_grid(cells=12)
+    with pytest.raises(RuntimeError, match="face sets"):  # there are none, or this Blender does not tell of them
+        bpy.ops.object.hybrid_quad_pick_face_set(face=0)
+    if not knows_face_sets():
+        return
+    chosen = choose(obj, middle)
+    set_face_attribute(obj, ".sculpt_face_set", "INT", np.where(chosen, 7, 2).astype(np.int32))
+    assert bpy.ops.object.hybrid_quad_pick_face_set(face=int(np.flatnonzero(chosen)[3])) == {"FINISHED"}
+    assert (obj.hybrid_quad.part.region, obj.hybrid_quad.part.face_set) == ("FACE_SET", 7)
+
+
 @pytest.mark.parametrize("region", ["SELECTED", "VISIBLE", "FACE_SET", "MASK", "ATTRIBUTE"])
 @pytest.mark.parametrize("is_inverted", [False, True])
 def test_every_way_to_choose(region, is_inverted):

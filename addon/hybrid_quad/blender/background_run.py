@@ -9,6 +9,7 @@ import bpy
 from ..core.errors import InputError
 from ..core.remesh import RemeshResult
 from ..worker.interpreter import worker_command
+from ..worker.known_results import KnownResults
 from ..worker.process import WorkerRun
 from .remesh_task import RemeshTask
 from .source_track import SourceTrack
@@ -35,8 +36,9 @@ class BackgroundRun:
         self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
         self._mode = mode
         self.on_forget: Callable[[], object] = lambda: None
+        self._request = task.request()
         self.worker = WorkerRun(
-            task.request(),
+            self._request,
             temporary_folder=bpy.app.tempdir or None,
             command=worker_command(host=bpy.app.binary_path),
         )
@@ -65,7 +67,9 @@ class BackgroundRun:
 
     def result(self) -> RemeshResult:
         """The finished run's result; raises what the run raised, see :meth:`.process.WorkerRun.result`."""
-        return self.worker.result()
+        result = self.worker.result()
+        _known.keep(self._request, result)
+        return result
 
     def find_source(self) -> bpy.types.Object:
         """The object that the result is for.
@@ -99,11 +103,22 @@ class BackgroundRun:
 
 
 _current: BackgroundRun | None = None
+_known = KnownResults()
 
 
 def current() -> BackgroundRun | None:
     """The run that goes on, if any: Blender's window serves one at a time."""
     return _current
+
+
+def known_result(task: RemeshTask) -> RemeshResult | None:
+    """What a former run of this session gave for the very same task; None where there was none."""
+    return _known.find(task.request())
+
+
+def forget_results() -> None:
+    """Lets go of what :func:`known_result` finds."""
+    _known.clear()
 
 
 def start(task: RemeshTask, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:

@@ -23,6 +23,20 @@ def out_of(obj: bpy.types.Object, *modes: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
+def out_of_for_change(obj: bpy.types.Object) -> Iterator[None]:
+    """:func:`out_of` Edit Mode and Sculpt Mode, to change what the active object is or has.
+
+    Undo steps of Sculpt Mode are differences, which Blender applies to whatever mesh it finds. So that it does not find the changed
+    one, a step of the whole file comes before the change: one undo leads there, in Object Mode.
+    """
+    is_sculpted = obj.mode == "SCULPT"
+    with out_of(obj, "EDIT", "SCULPT"):
+        if is_sculpted:
+            bpy.ops.ed.undo_push(message="Leave Sculpt Mode")
+        yield
+
+
+@contextlib.contextmanager
 def readable_mesh(obj: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
     """An object's mesh as it is, with all attributes: in Edit Mode, for a while, a copy of it."""
     if obj.mode != "EDIT":

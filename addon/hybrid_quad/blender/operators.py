@@ -16,7 +16,7 @@ from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
 from .background_run import BackgroundRun
-from .modes import out_of
+from .modes import out_of, out_of_for_change
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay
@@ -49,18 +49,26 @@ class RemeshOperator(ActiveMeshOperator):
             with out_of(obj, "SCULPT"):
                 task = prepare_task(obj, context.evaluated_depsgraph_get())
             result = task.solve()
-            with out_of(obj, "EDIT", "SCULPT"):
+            with out_of_for_change(obj):
                 return self._finish(context, obj, task, result, Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
 
     def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        """Leaves a run to a worker process; the operator is then modal."""
+        """Leaves a run to a worker process; the operator is then modal. What is known already is placed at once."""
         try:
             mode = context.mode
             with out_of(obj, "SCULPT"):
                 task = prepare_task(obj, context.evaluated_depsgraph_get())
-                self._run = background_run.start(task, obj, mode)
+                known = background_run.known_result(task)
+                if known is None:
+                    self._run = background_run.start(task, obj, mode)
+            if known is not None:
+                self.report(
+                    {"INFO"}, "Nothing that quads depend on has changed since they were made: here they are again"
+                )
+                with out_of_for_change(obj):
+                    return self._finish(context, obj, task, known, Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
         self._display = RunDisplay(self._run)
@@ -85,7 +93,7 @@ class RemeshOperator(ActiveMeshOperator):
         try:
             obj = self._run.find_source()
             result = self._run.result()
-            with out_of(obj, "EDIT", "SCULPT"):
+            with out_of_for_change(obj):
                 return self._finish(context, obj, self._run.task, result, self._placement(context, obj))
         except Exception as error:
             return self._fail(error)
