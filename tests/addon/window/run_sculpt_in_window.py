@@ -59,11 +59,7 @@ def masked_part() -> Iterator[float]:
     expect(done != FACES, f"the faces are others: {done}")
     expect(are_among(sculpted[:50], points_of(ball())), "the rest is where it was sculpted")
     yield from take_picture("sculpt_part.png")
-    bpy.context.window_manager.print_undo_steps()
     yield from undo()
-    print(len(ball().data.polygons), bpy.context.mode)
-    bpy.context.window_manager.print_undo_steps()
-    sys.stdout.flush()
     expect(len(ball().data.polygons) == FACES, "one undo brings the faces back")
     expect(np.array_equal(points_of(ball()), sculpted), "with what was sculpted")
     with in_view():
@@ -82,7 +78,7 @@ def masked_part() -> Iterator[float]:
 def picked_face_set() -> Iterator[float]:
     yield from mask()
     with in_view():
-        bpy.ops.sculpt.face_sets_create(mode="MASKED")
+        bpy.ops.sculpt.face_sets_create("EXEC_DEFAULT", True, mode="MASKED")
         if not knows_face_sets():
             expect(not bpy.ops.object.hybrid_quad_pick_face_set.poll(), "this Blender does not tell of face sets")
             return
@@ -180,10 +176,12 @@ def stroke() -> Iterator[float]:
 
 
 def mask() -> Iterator[float]:
-    """Masks a square around the view's middle, on both sides."""
+    """Masks a square around the view's middle, on both sides, with an undo step."""
     x, y = middle(of_region=True)
     with in_view():
-        bpy.ops.paint.mask_box_gesture(xmin=x - BOX, xmax=x + BOX, ymin=y - BOX, ymax=y + BOX, mode="VALUE", value=1.0)
+        bpy.ops.paint.mask_box_gesture(
+            "EXEC_DEFAULT", True, xmin=x - BOX, xmax=x + BOX, ymin=y - BOX, ymax=y + BOX, mode="VALUE", value=1.0
+        )
     yield 0.3
 
 
