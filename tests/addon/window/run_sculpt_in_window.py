@@ -8,6 +8,8 @@ Ends Blender with status 0 or 1. FOLDER receives pictures of the window.
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,7 +55,7 @@ def masked_part() -> Iterator[float]:
     yield from mask()
     settings = ball().hybrid_quad
     settings.part.region, settings.result_mode = "MASK", "REPLACE"
-    settings.part.use_border_length = False
+    settings.part.use_border_length, settings.quads = False, 4 * 32
     yield from remesh_from_sculpt_mode()
     done = len(ball().data.polygons)
     expect(done != FACES, f"the faces are others: {done}")
@@ -112,8 +114,11 @@ def sculpted_meanwhile() -> Iterator[float]:
     ball().hybrid_quad.result_mode = "REPLACE"
     with in_view():
         bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT")
+    worker = background_run.current().worker.process_id
+    os.kill(worker, signal.SIGSTOP)
     yield from stroke()
     sculpted = points_of(ball())
+    os.kill(worker, signal.SIGCONT)
     yield from until_finished()
     expect(np.array_equal(points_of(ball()), sculpted), "what was sculpted meanwhile is not replaced")
     expect("Ball Quads" in bpy.data.objects and not ball().hide_get(), "the result is beside it")
