@@ -10,9 +10,12 @@ import bpy
 
 @contextlib.contextmanager
 def out_of(obj: bpy.types.Object, *modes: str) -> Iterator[None]:
-    """Leaves a mode for a while if the active object is in one of these; the object that is active then is in it afterwards."""
+    """Leaves a mode for a while if an object is active and in one of these; what is active then is in it afterwards.
+
+    An object that is in a mode without being active stays in it: operators change the active one's.
+    """
     mode = obj.mode
-    if mode not in modes:
+    if mode not in modes or not _is_active(obj):
         yield
         return
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -29,11 +32,15 @@ def out_of_for_change(obj: bpy.types.Object) -> Iterator[None]:
     Undo steps of Sculpt Mode are differences, which Blender applies to whatever mesh it finds. So that it does not find the changed
     one, a step of the whole file comes before the change: one undo leads there, in Object Mode.
     """
-    is_sculpted = obj.mode == "SCULPT"
+    is_sculpted = obj.mode == "SCULPT" and _is_active(obj)
     with out_of(obj, "EDIT", "SCULPT"):
         if is_sculpted:
             bpy.ops.ed.undo_push(message="Leave Sculpt Mode")
         yield
+
+
+def _is_active(obj: bpy.types.Object) -> bool:
+    return bool(bpy.context.view_layer.objects.active == obj)
 
 
 @contextlib.contextmanager
