@@ -48,6 +48,21 @@ def test_gives_what_a_direct_run_gives():
     assert run.is_finished and run.has_result and run.find_source() == bpy.context.object
 
 
+def test_the_same_once_more_is_known():
+    run = _start(400)
+    obj = bpy.context.object
+    assert background_run.known_result(run.task) is None
+    result = run.result()
+    background_run.forget()
+    obj.hybrid_quad.result_mode, obj.hybrid_quad.time_limit = "REPLACE", 50  # quads do not depend on these
+    assert background_run.known_result(_task(obj)) is result
+    obj.hybrid_quad.adaptivity = 0.5
+    assert background_run.known_result(_task(obj)) is None
+    obj.hybrid_quad.adaptivity = 0
+    obj.data.vertices[3].co.x += 0.125
+    assert background_run.known_result(_task(obj)) is None
+
+
 def test_a_python_program_does_it():
     command = interpreter.worker_command(host=bpy.app.binary_path)
     assert Path(command[0]).name.startswith("python") and Path(command[0]) != Path(bpy.app.binary_path or "/")

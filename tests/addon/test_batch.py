@@ -149,6 +149,16 @@ def test_guides_and_flow_from_arguments():
     assert (settings.field_smoothness, settings.anisotropy) == (0.25, 2)
 
 
+def test_a_ratio_of_the_faces_is_a_target():
+    obj = add_cube(segments=10)  # 600 faces
+    command._apply_settings(
+        obj, command._parser().parse_args(["--object", "Cube", "--output", "o.blend", "--ratio", "0.5"])
+    )
+    assert prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options.quads == 300
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    assert prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options.quads == 1200
+
+
 def test_a_chord_error_from_arguments_takes_the_place_of_count_and_adaptivity():
     obj = add_cube()
     obj.hybrid_quad.adaptivity = 0.5

@@ -225,6 +225,23 @@ def test_edit_mode_is_refused():
     assert activate(source) and bpy.ops.object.hybrid_quad_remesh.poll()
 
 
+def test_sculpt_mode_is_gone_on_with():
+    source = add_sphere()
+    bpy.ops.object.mode_set(mode="SCULPT")
+    result = remesh()
+    assert result != source and (result.mode, source.mode) == ("SCULPT", "OBJECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_sound(result)
+
+
+def test_dyntopo_is_refused():
+    add_sphere()
+    bpy.ops.object.mode_set(mode="SCULPT")
+    bpy.ops.sculpt.dynamic_topology_toggle()
+    with pytest.raises(RuntimeError, match="Switch Dyntopo off first"):
+        bpy.ops.object.hybrid_quad_remesh()
+
+
 def test_only_mesh_objects_are_taken():
     assert not bpy.ops.object.hybrid_quad_remesh.poll()
     curve = bpy.data.objects.new("Curve", bpy.data.curves.new("Curve", "CURVE"))

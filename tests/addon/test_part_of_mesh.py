@@ -196,6 +196,23 @@ def test_in_edit_mode():
     assert boundary_count(obj.data) == 0
 
 
+@pytest.mark.parametrize("result_mode", ["REPLACE", "NEW"])
+def test_in_sculpt_mode(result_mode):
+    obj = add_grid(cells=12)
+    chosen = choose(obj, middle)
+    set_mask(obj.data, (np.abs(points_of(obj)[:, :2]) < 0.55).all(axis=1).astype(np.float32))
+    obj.hybrid_quad.part.region, obj.hybrid_quad.result_mode = "MASK", result_mode
+    before = Rest(obj.data, chosen)
+    bpy.ops.object.mode_set(mode="SCULPT")
+    assert bpy.ops.object.hybrid_quad_remesh() == {"FINISHED"}
+    result = bpy.context.object
+    assert result.mode == "SCULPT" and (result == obj) == (result_mode == "REPLACE")
+    assert [other.mode for other in bpy.data.objects if other != result] == ["OBJECT"] * (result_mode == "NEW")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_rest_kept(before, result.data, int((~chosen).sum()))
+    assert_closed_to_rest(result.data, int((~chosen).sum()))
+
+
 def test_edit_mode_is_for_parts_only():
     add_cube()
     bpy.ops.object.mode_set(mode="EDIT")
@@ -205,6 +222,18 @@ def test_edit_mode_is_for_parts_only():
 def set_face_attribute(obj, name, data_type, values) -> None:
     attribute = obj.data.attributes.new(name, data_type, "FACE")
     attribute.data.foreach_set("value", values)
+
+
+def test_a_face_set_is_picked():
+    obj = add_grid(cells=12)
+    with pytest.raises(RuntimeError, match="face sets"):  # there are none, or this Blender does not tell of them
+        bpy.ops.object.hybrid_quad_pick_face_set(face=0)
+    if not knows_face_sets():
+        return
+    chosen = choose(obj, middle)
+    set_face_attribute(obj, ".sculpt_face_set", "INT", np.where(chosen, 7, 2).astype(np.int32))
+    assert bpy.ops.object.hybrid_quad_pick_face_set(face=int(np.flatnonzero(chosen)[3])) == {"FINISHED"}
+    assert (obj.hybrid_quad.part.region, obj.hybrid_quad.part.face_set) == ("FACE_SET", 7)
 
 
 @pytest.mark.parametrize("region", ["SELECTED", "VISIBLE", "FACE_SET", "MASK", "ATTRIBUTE"])

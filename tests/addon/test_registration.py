@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import bpy
+import pytest
 
 import hybrid_quad
 from hybrid_quad.blender import command, panels, registration
 from hybrid_quad.blender.painting import paint_tool, stroke_view
+from scenes import add_cube
 
 
 def _traces() -> list[str]:
@@ -51,6 +53,25 @@ def test_every_property_has_a_tooltip():
         for prop in cls.bl_rna.properties:
             if prop.identifier in getattr(cls, "__annotations__", {}):
                 assert len(prop.description) > 10, f"{cls.__name__}.{prop.identifier}"
+
+
+@pytest.mark.parametrize("state", ["nothing is active", "Edit Mode"])
+def test_every_disabled_operator_says_why(state):
+    if state == "Edit Mode":
+        add_cube()
+        bpy.ops.object.mode_set(mode="EDIT")
+    operators = [cls.bl_idname for cls in registration.CLASSES if issubclass(cls, bpy.types.Operator)]
+    disabled = 0
+    for name in operators:
+        space, _, word = name.partition(".")
+        operator = getattr(getattr(bpy.ops, space), word)
+        if operator.poll():
+            continue
+        disabled += 1
+        with pytest.raises(RuntimeError) as caught:
+            operator()
+        assert "context is incorrect" not in str(caught.value), name
+    assert disabled >= 5
 
 
 def test_settings_belong_to_the_object():

@@ -9,6 +9,7 @@ import bpy
 from ..core.errors import InputError
 from ..core.remesh import RemeshResult
 from ..worker.interpreter import worker_command
+from ..worker.known_results import KnownResults
 from ..worker.process import WorkerRun
 from .remesh_task import RemeshTask
 from .source_track import SourceTrack
@@ -29,13 +30,15 @@ class BackgroundRun:
         Called when :func:`current` does not give the run any more.
     """
 
-    def __init__(self, task: RemeshTask, obj: bpy.types.Object) -> None:
+    def __init__(self, task: RemeshTask, obj: bpy.types.Object, mode: str) -> None:
         self.task = task
         self.source = SourceTrack(obj)
         self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
+        self._mode = mode
         self.on_forget: Callable[[], object] = lambda: None
+        self._request = task.request()
         self.worker = WorkerRun(
-            task.request(),
+            self._request,
             temporary_folder=bpy.app.tempdir or None,
             command=worker_command(host=bpy.app.binary_path),
         )
@@ -64,7 +67,9 @@ class BackgroundRun:
 
     def result(self) -> RemeshResult:
         """The finished run's result; raises what the run raised, see :meth:`.process.WorkerRun.result`."""
-        return self.worker.result()
+        result = self.worker.result()
+        _known.keep(self._request, result)
+        return result
 
     def find_source(self) -> bpy.types.Object:
         """The object that the result is for.
@@ -83,7 +88,10 @@ class BackgroundRun:
         """Whether Blender is in a mode in which the result can go to its place."""
         if context.mode == "OBJECT":
             return True
-        return self.task.part is not None and context.mode == "EDIT_MESH" and context.object == self.source.find()
+        can_be_left = context.mode == self._mode == "SCULPT" or (
+            self.task.part is not None and context.mode == "EDIT_MESH"
+        )
+        return can_be_left and context.object == self.source.find()
 
     def require_same_mesh(self, obj: bpy.types.Object) -> None:
         """Raises InputError ``mesh_changed`` where a part's mesh is not the one any more that it is a part of."""
@@ -95,6 +103,7 @@ class BackgroundRun:
 
 
 _current: BackgroundRun | None = None
+_known = KnownResults()
 
 
 def current() -> BackgroundRun | None:
@@ -102,8 +111,23 @@ def current() -> BackgroundRun | None:
     return _current
 
 
-def start(task: RemeshTask, obj: bpy.types.Object) -> BackgroundRun:
+def known_result(task: RemeshTask) -> RemeshResult | None:
+    """What a former run of this session gave for the very same task; None where there was none."""
+    return _known.find(task.request())
+
+
+def forget_results() -> None:
+    """Lets go of what :func:`known_result` finds."""
+    _known.clear()
+
+
+def start(task: RemeshTask, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:
     """Begins a run that :func:`current` gives from now on.
+
+    Parameters
+    ----------
+    mode : str
+        ``bpy.types.Context.mode`` in which the user asked for it. One asked for in Sculpt Mode can be placed there.
 
     Raises
     ------
@@ -112,7 +136,7 @@ def start(task: RemeshTask, obj: bpy.types.Object) -> BackgroundRun:
     """
     global _current
     assert _current is None
-    _current = BackgroundRun(task, obj)
+    _current = BackgroundRun(task, obj, mode)
     return _current
 
 

@@ -124,6 +124,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--quads", type=_positive_integer, metavar="N", help="number of quads to aim at")
+    size.add_argument("--ratio", type=_positive_number, metavar="R", help="number of quads to aim at for each face")
     size.add_argument(
         "--edge-length", type=_positive_number, metavar="L", help="length of the quads' edges, in scene units"
     )
@@ -302,6 +303,8 @@ def _apply_settings(obj: bpy.types.Object, options: argparse.Namespace) -> None:
     settings = obj.hybrid_quad
     if options.quads is not None:
         settings.target_mode, settings.quads = "COUNT", options.quads
+    if options.ratio is not None:
+        settings.target_mode, settings.ratio = "RATIO", options.ratio
     if options.edge_length is not None:
         settings.target_mode, settings.edge_length = "LENGTH", options.edge_length
     if options.chord_error is not None:

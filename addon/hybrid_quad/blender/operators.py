@@ -16,12 +16,16 @@ from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
 from . import background_run
 from .background_run import BackgroundRun
-from .edit_mode import out_of_edit_mode
+from .modes import out_of, out_of_for_change
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay
 
 _TIMER_SECONDS = 0.1
+
+# Of ``bpy.types.Object.mode``: where the whole mesh can be remeshed, and where a part of it.
+WHOLE_MODES = ("OBJECT", "SCULPT")
+PART_MODES = (*WHOLE_MODES, "EDIT")
 
 
 class ActiveMeshOperator(bpy.types.Operator):
@@ -41,16 +45,30 @@ class RemeshOperator(ActiveMeshOperator):
     def _now(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """A whole run."""
         try:
-            task = prepare_task(obj, context.evaluated_depsgraph_get())
-            return self._finish(context, obj, task, task.solve(), Placement.of_settings(obj))
+            # Sculpt Mode keeps changes to itself that the depsgraph does not know yet.
+            with out_of(obj, "SCULPT"):
+                task = prepare_task(obj, context.evaluated_depsgraph_get())
+            result = task.solve()
+            with out_of_for_change(obj):
+                return self._finish(context, obj, task, result, Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
 
     def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        """Leaves a run to a worker process; the operator is then modal."""
+        """Leaves a run to a worker process; the operator is then modal. What is known already is placed at once."""
         try:
-            task = prepare_task(obj, context.evaluated_depsgraph_get())
-            self._run = background_run.start(task, obj)
+            mode = context.mode
+            with out_of(obj, "SCULPT"):
+                task = prepare_task(obj, context.evaluated_depsgraph_get())
+                known = background_run.known_result(task)
+                if known is None:
+                    self._run = background_run.start(task, obj, mode)
+            if known is not None:
+                self.report(
+                    {"INFO"}, "Nothing that quads depend on has changed since they were made: here they are again"
+                )
+                with out_of_for_change(obj):
+                    return self._finish(context, obj, task, known, Placement.of_settings(obj))
         except Exception as error:
             return self._fail(error)
         self._display = RunDisplay(self._run)
@@ -74,7 +92,9 @@ class RemeshOperator(ActiveMeshOperator):
         background_run.forget()
         try:
             obj = self._run.find_source()
-            return self._finish(context, obj, self._run.task, self._run.result(), self._placement(context, obj))
+            result = self._run.result()
+            with out_of_for_change(obj):
+                return self._finish(context, obj, self._run.task, result, self._placement(context, obj))
         except Exception as error:
             return self._fail(error)
 
@@ -113,8 +133,7 @@ class RemeshOperator(ActiveMeshOperator):
         result: RemeshResult,
         placement: Placement,
     ) -> set[str]:
-        with out_of_edit_mode(obj):
-            target = place_result(context, obj, task, result, placement)
+        target = place_result(context, obj, task, result, placement)
         self._target = target.name
         for defect in result.report["defects"]:
             self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
@@ -141,7 +160,7 @@ class OBJECT_OT_hybrid_quad_remesh(RemeshOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.object
         is_part = obj is not None and obj.type == "MESH" and obj.hybrid_quad.part.region != "WHOLE"
-        problem = why_not_now() or problem_of(context, ("OBJECT", "EDIT") if is_part else ("OBJECT",))
+        problem = why_not_now() or problem_of(context, PART_MODES if is_part else WHOLE_MODES)
         if problem:
             cls.poll_message_set(problem)
         return not problem
@@ -225,7 +244,9 @@ def object_problem(obj: bpy.types.Object | None, modes: Collection[str] = ("OBJE
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first"
     if obj.mode not in modes:
-        return "Switch to Object Mode first"
+        return f"Switch to {' or '.join(f'{mode.title()} Mode' for mode in modes)} first"
+    if obj.mode == "SCULPT" and obj.use_dynamic_topology_sculpting:
+        return "Switch Dyntopo off first"
     if obj.library is not None:
         return "This object is linked from another file; make it local first"
     return ""

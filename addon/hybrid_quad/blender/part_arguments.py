@@ -46,7 +46,8 @@ def apply_part(obj: bpy.types.Object, options: argparse.Namespace) -> None:
         settings.use_inverted = options.part_inverted
     if options.odd_border is not None:
         settings.odd_border = _name(options.odd_border)
-    has_size = any(value is not None for value in (options.quads, options.edge_length, options.chord_error))
+    sizes = (options.quads, options.ratio, options.edge_length, options.chord_error)
+    has_size = any(value is not None for value in sizes)
     if options.border_size is not None or has_size:
         settings.use_border_length = bool(options.border_size)
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from .panels import HybridQuadPanel
+from .panel_base import HybridQuadPanel
+from .part_pick import OBJECT_OT_hybrid_quad_pick_face_set
 from .part_source import knows_face_sets
 
 
@@ -25,7 +26,9 @@ class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
         if settings.region == "WHOLE":
             return
         if settings.region == "FACE_SET":
-            column.prop(settings, "face_set", text="Number")
+            row = column.row(align=True)
+            row.prop(settings, "face_set", text="Number")
+            row.operator(OBJECT_OT_hybrid_quad_pick_face_set.bl_idname, text="", icon="EYEDROPPER")
             if not knows_face_sets():
                 column.label(text="Add-ons see face sets from Blender 3.5 on", icon="ERROR")
         elif settings.region == "ATTRIBUTE":

@@ -12,8 +12,8 @@ from ..core.edge_borders import BoolArray
 from ..core.errors import InputError
 from ..core.remesh_part import PartChoice
 from .edge_marks import FACE_SET_ATTRIBUTE
-from .edit_mode import readable_mesh
 from .mesh_source import MeshSource, linear_of, source_of
+from .modes import readable_mesh
 from .transfer import buffers, layers, mask, shape_keys
 from .transfer.rest import Rest
 

@@ -13,11 +13,12 @@ from .transfer.kinds import KINDS
 
 TARGET_MODES = (
     ("COUNT", "Quad Count", "Say how many quads the result should have"),
+    ("RATIO", "Ratio", "Say how many quads the result should have for each face of the mesh"),
     ("LENGTH", "Edge Length", "Say how long the quads' edges should be"),
     ("CHORD", "Chord Error", "Say how far the quads may be from the surface"),
 )
 # What says the size in each of them.
-SIZE_SETTINGS = {"COUNT": "quads", "LENGTH": "edge_length", "CHORD": "chord_error"}
+SIZE_SETTINGS = {"COUNT": "quads", "RATIO": "ratio", "LENGTH": "edge_length", "CHORD": "chord_error"}
 RESULT_MODES = (
     ("NEW", "New Object", "Put the quads in a new object; this one stays as it is, hidden in viewports and renders"),
     (
@@ -63,6 +64,15 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         max=MOST_QUADS,
         soft_min=100,
         soft_max=100_000,
+    )
+    ratio: bpy.props.FloatProperty(
+        name="Ratio",
+        description="Number of quads to aim at for each face that is remeshed, counted with visible modifiers applied",
+        default=0.5,
+        min=1e-5,
+        soft_min=0.01,
+        soft_max=4.0,
+        precision=3,
     )
     edge_length: bpy.props.FloatProperty(
         name="Edge Length",

@@ -18,6 +18,7 @@ from . import (
     operators,
     panels,
     part_panel,
+    part_pick,
     presets,
     properties,
     repair_operators,
@@ -37,6 +38,7 @@ CLASSES = (
     *check_operators.CLASSES,
     *repair_operators.CLASSES,
     *presets.CLASSES,
+    *part_pick.CLASSES,
     *limit.CLASSES,
     # Panels stand in the order in which they come here.
     *panels.CLASSES[:1],
@@ -72,6 +74,7 @@ def register() -> None:
 def unregister() -> None:
     """Safe to call where nothing is registered."""
     background_run.forget()
+    background_run.forget_results()
     sessions.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.

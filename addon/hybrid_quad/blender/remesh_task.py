@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.curve_counts import chains_of_edges
 from ..core.mesh_arrays import FloatArray, IntArray
-from ..core.options import RemeshOptions
+from ..core.options import MOST_QUADS, RemeshOptions
 from ..core.remesh import RemeshResult
 from ..core.remesh_part import PartChoice
 from ..core.strokes import Stroke, strokes_of_segments
@@ -150,6 +150,9 @@ def prepare_task(
         source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=asked)
     else:
         source = read_part_source(obj, depsgraph, asked)
+    if settings.target_mode == "RATIO":
+        faces = len(source.polygons.sizes) if part is None else int(part.faces.sum())
+        options = replace(options, quads=min(max(round(settings.ratio * faces), 1), MOST_QUADS))
     return RemeshTask(
         source,
         options,

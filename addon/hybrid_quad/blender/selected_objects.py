@@ -69,14 +69,17 @@ class OBJECT_OT_hybrid_quad_remesh_selected(RemeshOperator):
         obj = bpy.data.objects.get(name)
         problem = object_problem(obj)
         if obj is not None and problem:
-            self.report({"WARNING"}, f'"{name}" is left out: {problem}')
+            self.report({"ERROR"}, f'"{name}" is left out: {problem}')
         return None if problem else obj
 
     def _next(self, context: bpy.types.Context) -> set[str]:
         while self._left:
             obj = self._take()
-            if obj is not None and "RUNNING_MODAL" in self._begin(context, obj):
-                return {"RUNNING_MODAL"}
+            state = set() if obj is None else self._begin(context, obj)
+            if "RUNNING_MODAL" in state:
+                return state
+            if "FINISHED" in state:
+                self._done.append(self._target)
         return self._end(context)
 
     def _end(self, context: bpy.types.Context) -> set[str]:

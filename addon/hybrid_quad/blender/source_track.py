@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .edit_mode import readable_mesh
+from .modes import readable_mesh
 
 # How many numbers of what kind an element of an attribute has, and what they are called.
 _ATTRIBUTES = {

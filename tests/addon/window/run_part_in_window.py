@@ -152,6 +152,7 @@ def until_all_finished() -> Iterator[float]:
 
 def new_scene() -> Iterator[float]:
     """A grid, and a sphere."""
+    background_run.forget_results()
     with in_view():
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

@@ -26,6 +26,7 @@ from hybrid_quad.blender import background_run
 from scenes import activate, add_cube, add_sphere
 
 LONG_RUN_QUADS = 150_000
+MEDIUM_RUN_QUADS = 15_000  # all stages can be waited for
 CANCEL_BUTTON = 119  # pixels from the top of the sidebar down to its middle
 
 
@@ -38,6 +39,7 @@ def steps() -> Iterator[float]:
     yield from working_meanwhile()
     for test in (
         ended_by_escape,
+        ended_in_every_stage,
         ended_by_the_button,
         killed,
         hanging,
@@ -93,6 +95,19 @@ def ended_by_escape() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     yield from expect_unchanged_after(lambda: press("ESC"))
     expect_said("was cancelled")
+
+
+def ended_in_every_stage() -> Iterator[float]:
+    stages = []
+    for share in (0.04, 0.3, 0.75):
+        yield from start(MEDIUM_RUN_QUADS)
+        run = background_run.current()
+        while run.fraction < share and not run.is_finished:
+            yield 0.02
+        stages.append(run.worker.stage)
+        yield from expect_unchanged_after(lambda: press("ESC"))
+        expect_said("was cancelled")
+    expect(len(set(stages)) == 3, f"Esc came in several stages: {', '.join(stages)}")
 
 
 def ended_by_the_button() -> Iterator[float]:
@@ -211,6 +226,7 @@ def another_file_loaded() -> Iterator[float]:
 
 def new_scene() -> Iterator[float]:
     """A cube, and a sphere that is active."""
+    background_run.forget_results()
     with in_view():
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

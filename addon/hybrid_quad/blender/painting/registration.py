@@ -6,7 +6,7 @@ import contextlib
 
 import bpy
 
-from ..panels import VIEW3D_PT_hybrid_quad_guides
+from ..flow_panels import VIEW3D_PT_hybrid_quad_guides
 from . import (
     brush_settings,
     density_operator,

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..panels import HybridQuadPanel
+from ..panel_base import HybridQuadPanel
 from . import sessions
 from .limit import OBJECT_OT_hybrid_quad_apply_subdivision
 from .session import Session

@@ -14,7 +14,8 @@ from .drawing import Drawing
 from .field import FieldPreview
 from .limit import LimitPreview
 
-_SECONDS = 0.08  # between two looks
+_SECONDS = 0.08  # between two looks at what may have changed
+_SECONDS_BUSY = 0.02  # and at a worker, as its answer is waited for
 
 # Data whose lines may guide quads, whatever object shows it.
 _LINES = (bpy.types.Curve, bpy.types.Annotation if hasattr(bpy.types, "Annotation") else bpy.types.GreasePencil)
@@ -94,7 +95,7 @@ def unregister() -> None:
 def _tick() -> float | None:
     if step():
         redraw()
-    return _SECONDS
+    return _SECONDS_BUSY if field.session.is_busy or limit.session.is_busy else _SECONDS
 
 
 def _drawings() -> Iterator[Drawing]:

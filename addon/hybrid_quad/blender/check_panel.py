@@ -1,0 +1,38 @@
+"""The panel that lists what is wrong with a mesh."""
+
+from __future__ import annotations
+
+import bpy
+
+from .check_operators import (
+    OBJECT_OT_hybrid_quad_check,
+    OBJECT_OT_hybrid_quad_select_defect,
+    describe_row,
+    read_check,
+)
+from .panel_base import HybridQuadPanel
+from .repair_operators import OBJECT_OT_hybrid_quad_repair
+
+
+class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
+    """What is wrong with the mesh."""
+
+    bl_label = "Check"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator(OBJECT_OT_hybrid_quad_check.bl_idname, icon="VIEWZOOM")
+        rows = read_check(context.object)
+        if rows == []:
+            layout.label(text="Nothing is wrong with it", icon="CHECKMARK")
+        column = layout.column(align=True)
+        for row in rows or ():
+            line = column.split(factor=0.7)
+            line.label(text=describe_row(row), icon="INFO" if row["repairable"] else "ERROR")
+            if row["elements"]:
+                name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
+                line.operator(name, text="Select", icon=icon).code = row["code"]
+        if rows:
+            layout.operator(OBJECT_OT_hybrid_quad_repair.bl_idname, icon="MODIFIER")

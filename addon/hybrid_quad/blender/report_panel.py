@@ -1,0 +1,66 @@
+"""The panel that tells what the latest run gave."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .panel_base import HybridQuadPanel
+from .result_mesh import read_report
+
+
+class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
+    """What the latest run of the active object gave."""
+
+    bl_label = "Last Result"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(context.object.hybrid_quad.last_report)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        report = read_report(context.object)
+        if report is None:
+            self.layout.label(text="No report that can be read", icon="ERROR")
+            return
+        rows = self.layout.column(align=True)
+        for name, value in _rows_of(report):
+            row = rows.row()
+            row.label(text=name)
+            right = row.row()
+            right.alignment = "RIGHT"
+            right.label(text=value)
+        for defect in report.get("defects", ()):
+            self.layout.label(
+                text=f"Repaired: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
+            )
+        for warning in report.get("warnings", ()):
+            self.layout.label(text=warning, icon="ERROR")
+
+
+def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:
+    quality = report.get("scaled_jacobian", {})
+    return [
+        ("Quads", f"{report.get('quads', 0):,}"),
+        ("Irregular vertices", f"{report.get('irregular_vertices', 0):,}"),
+        ("Scaled Jacobian, mean", _number(quality.get("mean"))),
+        ("Scaled Jacobian, worst", _number(quality.get("min"))),
+        ("Largest distance", f"{_number(report.get('hausdorff_percent'))} %"),
+        *_symmetry_rows(report.get("symmetry", {})),
+        ("Time", f"{sum(stage.get('seconds', 0.0) for stage in report.get('stages', ())):.1f} s"),
+    ]
+
+
+def _symmetry_rows(symmetry: dict[str, Any]) -> list[tuple[str, str]]:
+    """How far the object is from symmetric along each axis, and along which it was mirrored."""
+    used = symmetry.get("planes", "")
+    return [
+        (f"Deviation {axis.upper()}{', mirrored' if axis in used else ''}", f"{_number(deviation.get('max'))} %")
+        for axis, deviation in symmetry.get("deviation_percent", {}).items()
+    ]
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"
