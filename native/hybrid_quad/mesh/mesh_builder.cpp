@@ -29,7 +29,9 @@ constexpr double kLeastShare = 1e-10;    ///< of the area; parts with less are s
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
 constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
-constexpr double kLeastExtent = 1e-11;   ///< over the distance from the origin: less leaves no bits for the places of quads
+/// Over the distance from the origin. There are then ten million places along the mesh: enough that quads of a thousandth of it
+/// have an area, and do not lose the ten thousandth of an edge by which flat ones are opened.
+constexpr double kLeastExtent = 1e-9;
 
 /// Builds the mesh step by step; every step notes the defects that it found.
 class MeshBuilder {
