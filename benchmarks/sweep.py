@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import random
 import sys
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -30,7 +31,7 @@ def main() -> int:
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     build = build_id()
-    runs = list(_runs(arguments))
+    runs = _sample(list(_runs(arguments)), arguments.sample, arguments.seed)
     if not runs:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
         return 2
@@ -91,6 +92,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--quads", nargs="+", type=int, default=[100, 500, 2000, 8000, 30000], metavar="N")
     parser.add_argument("--settings", nargs="+", choices=list(SETTINGS), default=list(SETTINGS))
     parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=list(VARIANTS))
+    parser.add_argument("--sample", type=int, metavar="N", help="only so many runs, drawn at random from all of these")
+    parser.add_argument("--seed", type=int, default=0, help="of the sample: the same number, the same runs (default 0)")
     parser.add_argument("--clean-only", action="store_true", help="only models that are manifold surfaces")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "sweep")
     parser.add_argument("--jobs", type=int, default=1, help="runs at once (default 1: honest timings)")
@@ -114,6 +117,13 @@ def _runs(arguments: argparse.Namespace) -> Iterator[Run]:
             for setting in arguments.settings:
                 for variant in arguments.variants:
                     yield Run(path.stem, path, quads, setting, variant=variant, may_refuse=not is_clean)
+
+
+def _sample(runs: list[Run], size: int | None, seed: int) -> list[Run]:
+    """The same runs for the same number, in the order in which they were."""
+    if size is None or size >= len(runs):
+        return runs
+    return [runs[i] for i in sorted(random.Random(seed).sample(range(len(runs)), size))]
 
 
 def _with_wishes(run: Run, folder: Path) -> Run:

@@ -21,6 +21,7 @@ NO_ELEMENTS = {
     "coordinates_too_coarse",
     "symmetry_side_empty",
     "symmetry_plane_missed",
+    "symmetry_edge_in_two_planes",
 }
 BAD = ("invalid", "internal_error", "exception", "bad_refusal", "timeout", "crash")
 

@@ -32,6 +32,15 @@ TEST(EdgeBisection, BoundsEdgesAndKeepsTheSurface) {
   }
 }
 
+TEST(EdgeBisection, StopsWithTheLongestHalved) {
+  const TriangleMesh hair = test::open_cylinder(3, 1, 1e-4, 100);
+  constexpr int kMost = 500;
+  const BisectedMesh fine = bisect_long_edges(hair, 0.05, {}, {}, kMost);
+  EXPECT_EQ(fine.mesh.vertex_count(), hair.vertex_count() + kMost);
+  EXPECT_LT(longest_edge(fine.mesh), 100.0 / 15);
+  EXPECT_EQ(fine.mesh.euler_characteristic(), hair.euler_characteristic());
+}
+
 TEST(EdgeBisection, LeavesShortEdgesAlone) {
   const TriangleMesh mesh = test::icosphere(3);
   const BisectedMesh same = bisect_long_edges(mesh, longest_edge(mesh), {});

@@ -277,6 +277,16 @@ TEST(MeshBuilder, RefusesWhatIsNoSurface) {
   EXPECT_EQ(refusal(bad), "malformed_faces");
 }
 
+TEST(MeshBuilder, RefusesWhatHasTooFewDigitsForItsQuads) {
+  const auto far_torus = [](double size) {
+    PolygonSoup soup = test::soup_of(test::torus(12, 8));
+    for (Vector3& p : soup.positions) p = size * p + Vector3(300, -500, 900);
+    return soup;
+  };
+  EXPECT_EQ(refusal(far_torus(1e-7)), "coordinates_too_coarse");
+  EXPECT_EQ(refusal(far_torus(1e-5)), "");
+}
+
 TEST(MeshBuilder, RefusesAMoebiusStrip) {
   PolygonSoup strip;
   const int n = 12;

@@ -221,6 +221,20 @@ TEST(PositivePart, RefusesASurfaceThatThePlaneMisses) {
   EXPECT_EQ(code(test::flat_grid(4, 4), kZ), "symmetry_side_empty") << "lies in the plane";
 }
 
+TEST(PositivePart, RefusesAnEdgeInTwoPlanes) {
+  const TriangleMesh grid = test::flat_grid(4, 4);
+  std::vector<Vector3> positions = grid.positions();
+  for (Vector3& p : positions) p.z() = p.y();  // leaves both planes along the x axis
+  const TriangleMesh slope(positions, grid.faces());
+  for (const PlaneSet one : {plane(1), plane(2)}) EXPECT_EQ(positive_part(slope, one).mesh.face_count(), grid.face_count());
+  try {
+    positive_part(slope, plane(1) | plane(2));
+    FAIL() << "four mirror images share an edge";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.code, "symmetry_edge_in_two_planes");
+  }
+}
+
 TEST(PositivePart, AFaceInThePlaneOpensTheSurface) {
   const TriangleMesh box = test::box(3);
   const PositivePart part = positive_part(box, kX);

@@ -166,3 +166,46 @@ def test_a_model_turns_with_its_result():
     result = hybrid_quad.remesh(vertices @ turn.T, faces, quads=1000, sharp_angle=None)
     assert np.array_equal(result.quads, usual.quads)
     assert np.abs(result.vertices @ turn - usual.vertices).max() < 1e-3 * np.ptp(vertices)
+
+
+def dirty_sheet():
+    """Rectangles, of which either diagonal is as good, faces the wrong way round, a copy, a face without area."""
+    n = 7
+    x, y = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
+    vertices = np.stack([x.ravel(), 0.8 * y.ravel() ** 1.3, 0.2 * x.ravel() ** 2], axis=1)
+    corners = [j * (n + 1) + i for j in range(n) for i in range(n)]
+    faces = [[a, a + 1, a + n + 2, a + n + 1] for a in corners]
+    faces[3], faces[9] = faces[3][::-1], faces[9][::-1]
+    a, b, c, d = faces.pop(20)
+    vertices = np.vstack([vertices, (vertices[a] + vertices[b]) / 2])
+    middle = len(vertices) - 1
+    faces += [[a, middle, c, d], [middle, b, c], [a, b, middle], list(faces[5])]
+    return vertices, faces
+
+
+def test_the_order_of_a_dirty_file_with_wishes_makes_no_difference():
+    vertices, faces = dirty_sheet()
+    density = np.exp(np.sin(vertices @ [5.0, 3.0, 2.0]))
+    guides = np.cross(vertices - [0.5, 0.4, 0.1], [0.3, 0.2, 1.0])
+    marks = [(faces[0][0], faces[0][1]), (faces[10][1], faces[10][2])]
+
+    def remeshed(order, shuffled_faces):
+        place = np.argsort(order)
+        return hybrid_quad.remesh(
+            vertices[order],
+            shuffled_faces,
+            quads=QUADS,
+            density=density[order],
+            guides=guides[order],
+            sharp_edges=[(int(place[a]), int(place[b])) for a, b in marks],
+        )
+
+    usual = remeshed(np.arange(len(vertices)), faces)
+    for seed in (1, 2):
+        random = np.random.default_rng(seed)
+        order = random.permutation(len(vertices))
+        place = np.argsort(order)
+        mixed = [np.roll(place[faces[i]], random.integers(4)).tolist() for i in random.permutation(len(faces))]
+        result = remeshed(order, mixed)
+        assert np.array_equal(result.quads, usual.quads)
+        assert np.array_equal(result.vertices, usual.vertices)

@@ -2,53 +2,74 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <numeric>
 #include <tuple>
+
+#include "hybrid_quad/mesh/first_halfedge.h"
 
 namespace hybrid_quad {
 
 namespace {
 
-/// What tells half-edges apart without their numbers: the greatest starts.
-struct Rank {
-  std::array<double, 3> lengths;  ///< squared, of this edge and the face's next two
-  std::array<double, 9> corners;  ///< coordinates, for edges of equal length: these turn with the surface, lengths do not
+constexpr double kSame = 1e-7;  ///< of the greatest: squared lengths that differ by less are the same
 
-  bool operator<(const Rank& other) const { return std::tie(lengths, corners) < std::tie(other.lengths, other.corners); }
+/// What tells components apart without their numbers: the greatest comes first.
+struct Start {
+  int halfedge;
+  std::array<double, 4> lengths2;  ///< squared: of the half-edge, and of its face's corners from the middle of all
+  std::array<double, 3> corner;    ///< where it begins: turns with the surface, the lengths do not
 };
 
-Rank rank_of(const TriangleMesh& mesh, int h) {
-  Rank rank{};
-  for (int i = 0; i < 3; ++i, h = TriangleMesh::next(h)) {
-    rank.lengths[i] = mesh.edge_vector(h).squaredNorm();
-    for (int k = 0; k < 3; ++k) rank.corners[3 * i + k] = mesh.position(mesh.from(h))[k];
+/// Sorts starts[begin, end), of which the lengths before number k are the same.
+void sort_starts(std::vector<Start>& starts, std::size_t begin, std::size_t end, std::size_t k, double greatest2) {
+  const auto first = starts.begin() + static_cast<std::ptrdiff_t>(begin), last = starts.begin() + static_cast<std::ptrdiff_t>(end);
+  if (k == std::tuple_size<decltype(Start::lengths2)>::value) {
+    std::stable_sort(first, last, [](const Start& x, const Start& y) { return x.corner > y.corner; });
+    return;
   }
-  return rank;
+  std::stable_sort(first, last, [k](const Start& x, const Start& y) { return x.lengths2[k] > y.lengths2[k]; });
+  for (std::size_t i = begin; i < end;) {
+    std::size_t next = i + 1;
+    while (next < end && starts[next - 1].lengths2[k] - starts[next].lengths2[k] <= kSame * greatest2) ++next;
+    if (next > i + 1) sort_starts(starts, i, next, k + 1, greatest2);
+    i = next;
+  }
 }
 
-/// For each component its half-edge of the greatest rank, the greatest component first.
+/// For each component the half-edge to begin with, the component with the longest edge first.
 std::vector<int> starts_of(const TriangleMesh& mesh) {
+  std::vector<int> all(mesh.face_count());
+  std::iota(all.begin(), all.end(), 0);
+  if (all.empty()) return {};
+  const Vector3 middle = middle_of(mesh, all);
   std::vector<char> seen(mesh.face_count(), 0);
-  std::vector<std::pair<Rank, int>> starts;
-  std::vector<int> front;
+  std::vector<Start> starts;
+  std::vector<int> faces;
+  double greatest2 = 0;
   for (int seed = 0; seed < mesh.face_count(); ++seed) {
     if (seen[seed]) continue;
     seen[seed] = 1;
-    front = {seed};
-    std::pair<Rank, int> best{rank_of(mesh, 3 * seed), 3 * seed};
-    for (std::size_t i = 0; i < front.size(); ++i)
-      for (int h = 3 * front[i]; h < 3 * front[i] + 3; ++h) {
-        const Rank rank = rank_of(mesh, h);
-        if (best.first < rank) best = {rank, h};
+    faces = {seed};
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      for (int h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h) {
         const int o = mesh.opposite(h);
         if (o < 0 || seen[o / 3]) continue;
         seen[o / 3] = 1;
-        front.push_back(o / 3);
+        faces.push_back(o / 3);
       }
-    starts.push_back(best);
+    const int h = first_halfedge(mesh, faces);
+    Start start{h, {mesh.edge_vector(h).squaredNorm()}, {}};
+    int corner = h;
+    for (int i = 1; i < 4; ++i, corner = TriangleMesh::next(corner))
+      start.lengths2[i] = (mesh.position(mesh.from(corner)) - middle).squaredNorm();
+    for (int i = 0; i < 3; ++i) start.corner[i] = mesh.position(mesh.from(h))[i];
+    greatest2 = std::max(greatest2, *std::max_element(start.lengths2.begin(), start.lengths2.end()));
+    starts.push_back(start);
   }
-  std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return b.first < a.first; });
+  sort_starts(starts, 0, starts.size(), 0, greatest2);
   std::vector<int> halfedges;
-  for (const auto& [rank, h] : starts) halfedges.push_back(h);
+  for (const Start& start : starts) halfedges.push_back(start.halfedge);
   return halfedges;
 }
 

@@ -12,8 +12,8 @@ struct CanonicalOrder {
   std::vector<int> halfedge;  ///< 3 #F: likewise; those of a face stay together and in their cyclic order
 };
 
-/// Breadth first from the longest edge of each component, the component with the longest of them first. Invariant under
-/// permutations of vertices and faces, and under rigid motions as long as rounding leaves the longest edge the longest.
+/// Breadth first from first_halfedge() of each component, the component with the longest edge first, of equal ones that farther
+/// from the middle. Invariant under permutations of vertices and faces, and under rigid motions unless the mesh has symmetries.
 CanonicalOrder canonical_order(const TriangleMesh& mesh);
 
 /// The mesh in another order.

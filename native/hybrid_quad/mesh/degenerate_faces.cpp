@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/degenerate_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -62,6 +63,12 @@ bool resolve(EditableMesh& m, int f) {
 bool has_no_area(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return !((b - a).cross(c - a).norm() > kRelativeHeight * longest2);
+}
+
+bool has_faces_without_area(const TriangleMesh& mesh) {
+  return std::any_of(mesh.faces().begin(), mesh.faces().end(), [&mesh](const std::array<int, 3>& t) {
+    return has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
+  });
 }
 
 ResolvedMesh resolve_faces_without_area(const TriangleMesh& mesh) {

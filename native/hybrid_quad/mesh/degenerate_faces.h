@@ -18,4 +18,6 @@ struct ResolvedMesh {
 /// surface's topology and shape stay. Faces that neither can remove remain.
 ResolvedMesh resolve_faces_without_area(const TriangleMesh& mesh);
 
+bool has_faces_without_area(const TriangleMesh& mesh);
+
 }  // namespace hybrid_quad

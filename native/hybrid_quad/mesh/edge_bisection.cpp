@@ -90,7 +90,7 @@ struct LongEdge {
 }  // namespace
 
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
-                               const std::vector<EdgeSet>& chains) {
+                               const std::vector<EdgeSet>& chains, double most_splits) {
   std::vector<Mark> marks;
   EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks));
   split_edges_with_common_ends(edited);
@@ -102,10 +102,11 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
   };
   for (int h = 0; h < edited.halfedge_slots(); ++h)
     if (edited.opposite(h) < h) push(h);
-  while (!queue.empty()) {
+  for (double splits = 0; !queue.empty() && splits < most_splits;) {
     const LongEdge edge = queue.top();
     queue.pop();
     if (squared_length(edge.halfedge) != edge.squared_length) continue;
+    ++splits;
     const int from = edited.from(edge.halfedge), to = edited.to(edge.halfedge);
     const int middle = edited.split_edge(edge.halfedge, 0.5 * (edited.position(from) + edited.position(to)));
     // All sides of the new faces: splitting moved half-edges from one edge to another.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "hybrid_quad/mesh/triangle_mesh.h"
@@ -19,8 +20,10 @@ struct BisectedMesh {
 /// The same surface with no edge longer than `longest` and no two with the same two ends: edges are halved, longest first (Rivara 1984), so that what is
 /// known at vertices is known everywhere.
 /// \param chains  sets of edges, no edge in two of them, that are marked too but told apart
+/// \param most_splits  after so many halvings the edges that are left, none longer than any that was halved, stay as they are
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
-                               const std::vector<EdgeSet>& chains = {});
+                               const std::vector<EdgeSet>& chains = {},
+                               double most_splits = std::numeric_limits<double>::infinity());
 
 /// The least length from `longest` on at which halving falls into about `most_pieces` edges, of those that are longer: thin as a
 /// hair, a surface would be cut into as many pieces as its length has widths.

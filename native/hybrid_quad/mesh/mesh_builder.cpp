@@ -12,6 +12,7 @@
 #include "hybrid_quad/mesh/mesh_oddities.h"
 #include "hybrid_quad/mesh/negligible_faces.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
+#include "hybrid_quad/mesh/soup_order.h"
 #include "hybrid_quad/mesh/t_junctions.h"
 #include "hybrid_quad/mesh/vertex_spread.h"
 #include "hybrid_quad/mesh/vertex_welding.h"
@@ -28,12 +29,14 @@ constexpr double kLeastShare = 1e-10;    ///< of the area; parts with less are s
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
 constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
-constexpr double kLeastExtent = 1e-11;   ///< over the distance from the origin: less leaves no bits for the places of quads
+/// Over the distance from the origin. There are then ten million places along the mesh: enough that quads of a thousandth of it
+/// have an area, and do not lose the ten thousandth of an edge by which flat ones are opened.
+constexpr double kLeastExtent = 1e-9;
 
 /// Builds the mesh step by step; every step notes the defects that it found.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(const PolygonSoup& soup) : soup_(soup) {}
+  explicit MeshBuilder(const PolygonSoup& soup) : given_(soup) {}
 
   BuiltMesh build(const RunContext& context);
   std::vector<Defect> defects;
@@ -42,6 +45,7 @@ class MeshBuilder {
   void check_faces();
   void find_references();
   void check_positions();
+  void order();
   void normalize_positions();
   void make_triangles();
   void weld();
@@ -50,38 +54,43 @@ class MeshBuilder {
   BuiltMesh glue();
   void drop_negligible_components(BuiltMesh& built);
 
+  std::vector<int> as_given(const char* kind, std::vector<int> elements) const {
+    return is_in_order_ ? given_elements(ordered_, kind, std::move(elements)) : elements;
+  }
   void note(const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
-    if (!elements.empty()) defects.push_back({code, kind, std::move(elements), true, false, remedy});
+    if (!elements.empty()) defects.push_back({code, kind, as_given(kind, std::move(elements)), true, false, remedy});
   }
   [[noreturn]] void refuse(const char* code, const std::string& message, const char* kind, std::vector<int> elements) {
+    elements = as_given(kind, std::move(elements));
     defects.push_back({code, kind, elements, false, false, message});
     throw InputError(code, message, kind, std::move(elements));
   }
-  int face_count() const { return static_cast<int>(soup_.face_sizes.size()); }
+  int face_count() const { return static_cast<int>(given_.face_sizes.size()); }
 
-  const PolygonSoup& soup_;
-  std::vector<int> first_corner_;
-  std::vector<char> is_used_;
+  const PolygonSoup& given_;
+  std::vector<char> is_used_;       ///< of the vertices as they were given
+  bool is_in_order_ = false;
+  OrderedSoup ordered_;             ///< what all elements below are of
   std::vector<Vector3> positions_;  ///< moved to the box's centre and divided by its diagonal
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
 };
 
 void MeshBuilder::check_faces() {
-  first_corner_.assign(1, 0);
+  std::vector<int> first_corner{0};
   long long corners = 0;
-  for (const int size : soup_.face_sizes) {
+  for (const int size : given_.face_sizes) {
     corners += std::max(size, 0);
-    if (size < 0 || corners > static_cast<long long>(soup_.face_vertices.size())) break;
-    first_corner_.push_back(static_cast<int>(corners));
+    if (size < 0 || corners > static_cast<long long>(given_.face_vertices.size())) break;
+    first_corner.push_back(static_cast<int>(corners));
   }
-  if (static_cast<int>(first_corner_.size()) != face_count() + 1 || corners != static_cast<long long>(soup_.face_vertices.size()))
+  if (static_cast<int>(first_corner.size()) != face_count() + 1 || corners != static_cast<long long>(given_.face_vertices.size()))
     refuse("malformed_faces", "The sizes of the faces do not add up to the number of face corners.", "", {});
   std::vector<int> bad;
-  const int vertex_count = static_cast<int>(soup_.positions.size());
+  const int vertex_count = static_cast<int>(given_.positions.size());
   for (int f = 0; f < face_count(); ++f)
-    for (int c = first_corner_[f]; c < first_corner_[f + 1]; ++c)
-      if (soup_.face_vertices[c] < 0 || soup_.face_vertices[c] >= vertex_count) {
+    for (int c = first_corner[f]; c < first_corner[f + 1]; ++c)
+      if (given_.face_vertices[c] < 0 || given_.face_vertices[c] >= vertex_count) {
         bad.push_back(f);
         break;
       }
@@ -90,8 +99,8 @@ void MeshBuilder::check_faces() {
 }
 
 void MeshBuilder::find_references() {
-  is_used_.assign(soup_.positions.size(), 0);
-  for (const int v : soup_.face_vertices) is_used_[v] = 1;
+  is_used_.assign(given_.positions.size(), 0);
+  for (const int v : given_.face_vertices) is_used_[v] = 1;
   std::vector<int> isolated;
   for (int v = 0; v < static_cast<int>(is_used_.size()); ++v)
     if (!is_used_[v]) isolated.push_back(v);
@@ -103,27 +112,33 @@ void MeshBuilder::check_positions() {
   for (int v = 0; v < static_cast<int>(is_used_.size()); ++v) {
     if (!is_used_[v]) continue;
     used.push_back(v);
-    if (!soup_.positions[v].allFinite()) bad.push_back(v);
+    if (!given_.positions[v].allFinite()) bad.push_back(v);
   }
   if (!bad.empty()) refuse("non_finite_vertex", "Vertices have coordinates that are no finite numbers.", "vertex", std::move(bad));
 
   std::vector<Vector3> points;
-  for (const int v : used) points.push_back(soup_.positions[v]);
+  for (const int v : used) points.push_back(given_.positions[v]);
   if (points.empty()) return;  // faces without corners
   const VertexSpread spread = spread_of(points);
   for (const int v : used)
-    if (spread.ratio(soup_.positions[v]) > kOutlierFactor) bad.push_back(v);
+    if (spread.ratio(given_.positions[v]) > kOutlierFactor) bad.push_back(v);
   if (!bad.empty())
     refuse("coordinate_outlier", "Vertices lie so far from all others that these shrink to a point.", "vertex", std::move(bad));
 }
 
+/// From here on the order of the file makes no difference.
+void MeshBuilder::order() {
+  ordered_ = in_order_of_places(given_);
+  is_in_order_ = true;
+}
+
 void MeshBuilder::normalize_positions() {
+  const std::vector<Vector3>& given = ordered_.soup.positions;
   Vector3 low = Vector3::Constant(HUGE_VAL), high = Vector3::Constant(-HUGE_VAL);
-  for (std::size_t v = 0; v < is_used_.size(); ++v)
-    if (is_used_[v]) {
-      low = low.cwiseMin(soup_.positions[v]);
-      high = high.cwiseMax(soup_.positions[v]);
-    }
+  for (const Vector3& p : given) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
   const Vector3 centre = 0.5 * low + 0.5 * high;
   const Vector3 half = high - centre;
   const double size = half.maxCoeff();
@@ -131,21 +146,24 @@ void MeshBuilder::normalize_positions() {
   if (size < kLeastExtent * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff())
     refuse("coordinates_too_coarse", "The mesh is so far from the origin that its coordinates have no digits left for its shape.", "", {});
   const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
-  positions_.assign(is_used_.size(), Vector3::Zero());
-  for (std::size_t v = 0; v < is_used_.size(); ++v)
-    if (is_used_[v]) positions_[v] = (soup_.positions[v] - centre) / size / diagonal;
+  positions_.reserve(given.size());
+  for (const Vector3& p : given) positions_.push_back((p - centre) / size / diagonal);
 }
 
 void MeshBuilder::make_triangles() {
   std::vector<int> repeated, few, corners, flat;
+  Vector3 middle = Vector3::Zero();
+  for (const Vector3& p : positions_) middle += p / static_cast<double>(positions_.size());
   for (int f = 0; f < face_count(); ++f) {
-    corners.assign(soup_.face_vertices.begin() + first_corner_[f], soup_.face_vertices.begin() + first_corner_[f + 1]);
+    const auto begin = ordered_.soup.face_vertices.begin();
+    corners.assign(begin + ordered_.first_corner[f], begin + ordered_.first_corner[f + 1]);
     const std::size_t size = corners.size();
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
     if (size < 3) few.push_back(f);
     else if (corners.size() < size) repeated.push_back(f);
     if (corners.size() < 3) continue;
+    if (corners.size() > 3) begin_far_from(middle, positions_, corners);
     bool is_flat = true;
     for (const auto& t : triangulate_polygon(positions_, corners)) {
       if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
@@ -190,8 +208,6 @@ void MeshBuilder::weld() {
   if (merge_vertices(target)) note("unwelded_vertex", "vertex", merged(target), "merged with the vertex at the same place");
   if (triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
   target = nearly_welded_vertices(positions_, kLooseTolerance);
-  for (std::size_t v = 0; v < target.size(); ++v)
-    if (!is_used_[v]) target[v] = static_cast<int>(v);
   const auto triangles = triangles_;
   const auto polygon = polygon_;
   merge_vertices(target);
@@ -254,12 +270,33 @@ BuiltMesh MeshBuilder::glue() {
   note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
 
   BuiltMesh built;
-  const TriangleMesh whole(std::move(glued.positions), std::move(glued.faces), std::move(glued.opposite));
-  ResolvedMesh resolved = resolve_faces_without_area(whole);
-  for (const int v : resolved.vertex_source) built.input_vertex.push_back(glued.source_vertex[v]);
-  for (const int f : resolved.face_source) built.input_face.push_back(polygon_[f]);
-  built.mesh = std::move(resolved.mesh);
+  built.mesh = TriangleMesh(std::move(glued.positions), std::move(glued.faces), std::move(glued.opposite));
+  built.input_vertex = std::move(glued.source_vertex);
+  built.input_face = polygon_;
   return built;
+}
+
+/// The same surface gives the same mesh, in whatever order its file has it, and however it lies in space.
+void put_in_order(BuiltMesh& built) {
+  const CanonicalOrder order = canonical_order(built.mesh);
+  std::vector<int> input_vertex, input_face;
+  for (const int v : order.vertex) input_vertex.push_back(built.input_vertex[v]);
+  for (std::size_t h = 0; h < order.halfedge.size(); h += 3) input_face.push_back(built.input_face[order.halfedge[h] / 3]);
+  built.mesh = reordered(built.mesh, order);
+  built.input_vertex = std::move(input_vertex);
+  built.input_face = std::move(input_face);
+}
+
+/// Flips and collapses faces without area away, one after the other.
+void resolve_faces(BuiltMesh& built) {
+  if (!has_faces_without_area(built.mesh)) return;
+  ResolvedMesh resolved = resolve_faces_without_area(built.mesh);
+  for (int& v : resolved.vertex_source) v = built.input_vertex[v];
+  for (int& f : resolved.face_source) f = built.input_face[f];
+  built.input_vertex = std::move(resolved.vertex_source);
+  built.input_face = std::move(resolved.face_source);
+  built.mesh = std::move(resolved.mesh);
+  put_in_order(built);
 }
 
 /// Drops components without area, and those so small that their quads would have none, and puts the vertices back at
@@ -284,7 +321,7 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
     if (new_vertex[v] == 0) {
       new_vertex[v] = static_cast<int>(positions.size());
       kept.input_vertex.push_back(built.input_vertex[v]);
-      positions.push_back(soup_.positions[built.input_vertex[v]]);
+      positions.push_back(ordered_.soup.positions[built.input_vertex[v]]);
     }
   for (int f = 0; f < mesh.face_count(); ++f)
     if (new_face[f] >= 0) {
@@ -302,21 +339,11 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   built = std::move(kept);
 }
 
-/// The same surface gives the same mesh, in whatever order its file has it.
-void put_in_order(BuiltMesh& built) {
-  const CanonicalOrder order = canonical_order(built.mesh);
-  std::vector<int> input_vertex, input_face;
-  for (const int v : order.vertex) input_vertex.push_back(built.input_vertex[v]);
-  for (std::size_t h = 0; h < order.halfedge.size(); h += 3) input_face.push_back(built.input_face[order.halfedge[h] / 3]);
-  built.mesh = reordered(built.mesh, order);
-  built.input_vertex = std::move(input_vertex);
-  built.input_face = std::move(input_face);
-}
-
 BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_faces();
   find_references();
   check_positions();
+  order();
   normalize_positions();
   context.checkpoint();
   make_triangles();
@@ -332,7 +359,11 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   BuiltMesh built = glue();
   context.checkpoint();
   put_in_order(built);
+  context.checkpoint();
+  resolve_faces(built);
   drop_negligible_components(built);
+  for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
+  for (int& f : built.input_face) f = ordered_.given_face[f];
   return built;
 }
 

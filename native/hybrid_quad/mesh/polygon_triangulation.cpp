@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/polygon_triangulation.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hybrid_quad {
 
@@ -46,6 +47,7 @@ std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& 
   const std::vector<Vector2> flat = flattened(positions, corners);
   std::vector<int> left(corners.size());
   for (int i = 0; i < static_cast<int>(left.size()); ++i) left[i] = i;
+  constexpr double kBetter = 1 + 1e-9;  // what is better by less is as good, but for rounding
   constexpr int kLargePolygon = 64;  // beyond it the first ear is taken: the best one costs O(n^3) in all
   std::vector<std::array<int, 3>> triangles;
   while (left.size() > 3) {
@@ -54,7 +56,7 @@ std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& 
     double best_quality = 0;
     for (int i = 0; i < n && (best < 0 || n <= kLargePolygon); ++i) {
       const double quality = ear_quality(flat, left, i);
-      if (quality > best_quality) {
+      if (quality > kBetter * best_quality) {
         best_quality = quality;
         best = i;
       }
@@ -65,6 +67,14 @@ std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& 
   }
   triangles.push_back({corners[left[0]], corners[left[1]], corners[left[2]]});
   return triangles;
+}
+
+void begin_far_from(const Vector3& point, const std::vector<Vector3>& positions, std::vector<int>& corners) {
+  constexpr double kFarther = 1 + 1e-9;
+  std::size_t start = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    if ((positions[corners[i]] - point).squaredNorm() > kFarther * (positions[corners[start]] - point).squaredNorm()) start = i;
+  std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(start), corners.end());
 }
 
 }  // namespace hybrid_quad

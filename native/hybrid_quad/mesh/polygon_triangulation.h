@@ -11,4 +11,8 @@ namespace hybrid_quad {
 /// are fine, and a polygon that crosses itself still gives corner count - 2 triangles.
 std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners);
 
+/// Lets a polygon begin at the corner farthest from a point, of several as far at the first of them: of equal ears (a
+/// parallelogram has two ways to be cut) triangulate_polygon takes that of the first corner, however the polygon lies in space.
+void begin_far_from(const Vector3& point, const std::vector<Vector3>& positions, std::vector<int>& corners);
+
 }  // namespace hybrid_quad

@@ -9,7 +9,26 @@ namespace {
 /// Where the nearest point of a triangle lies: inside, on side i (corners i, i + 1) or at corner i.
 enum Place : int { kInside = -1, kSide0 = 0, kCorner0 = 3 };
 
+/// Of a side or a triangle: a point that near to an end or a side lies there. A rotation must not move it off.
+constexpr double kOnBorder = 1e-9;
+
 Vector3 along(const Vector3& a, const Vector3& ab, double part, double whole) { return whole > 0 ? Vector3(a + ab * (part / whole)) : a; }
+
+/// The place of a point of side i, that far from its begin. \param begin, end  its corners
+int place_on_side(int side, int begin, int end, double part, double whole) {
+  if (!(part > kOnBorder * whole)) return kCorner0 + begin;
+  return part < (1 - kOnBorder) * whole ? kSide0 + side : kCorner0 + end;
+}
+
+/// The place of a point inside, of weights that sum up to `sum`.
+int place_inside(const double (&weight)[3], double sum) {
+  int place = kInside, count = 0, corner = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (weight[i] > kOnBorder * sum) corner = i;
+    else place = kSide0 + (i + 1) % 3, ++count;
+  }
+  return count < 2 ? place : kCorner0 + corner;
+}
 
 /// Voronoi regions of the triangle's corners and sides in turn (Ericson, Real-Time Collision Detection, 5.1.5).
 Vector3 nearest_with_place(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c, int* place) {
@@ -27,7 +46,7 @@ Vector3 nearest_with_place(const Vector3& p, const Vector3& a, const Vector3& b,
   }
   const double vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-    *place = kSide0;
+    *place = place_on_side(0, 0, 1, d1, d1 - d3);
     return along(a, ab, d1, d1 - d3);
   }
   const Vector3 cp = p - c;
@@ -38,17 +57,18 @@ Vector3 nearest_with_place(const Vector3& p, const Vector3& a, const Vector3& b,
   }
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    *place = kSide0 + 2;
+    *place = place_on_side(2, 0, 2, d2, d2 - d6);
     return along(a, ac, d2, d2 - d6);
   }
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    *place = kSide0 + 1;
+    *place = place_on_side(1, 1, 2, d4 - d3, (d4 - d3) + (d5 - d6));
     return along(b, c - b, d4 - d3, (d4 - d3) + (d5 - d6));
   }
   const double sum = va + vb + vc;
   *place = kInside;
   if (!(sum > 0)) return nearest_on_triangle(p, a, b, c);
+  *place = place_inside({va, vb, vc}, sum);
   return a + ab * (vb / sum) + ac * (vc / sum);
 }
 

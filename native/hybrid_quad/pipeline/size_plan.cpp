@@ -194,16 +194,18 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   // are near enough, however small the quads: a few ten thousand triangles tell.
   constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
   constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
+  // Halves of a needle are three needles, so that a surface thin as a hair becomes far more pieces than its edges do.
+  constexpr double kSplitsPerPiece = 2;
   context.checkpoint();
   ComponentPlan plan;
   plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / quads_for_topology(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
   const double wanted = std::max(kLongestEdge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
-  const double longest =
-      affordable_length(mesh, wanted, kPieces + kPiecesPerQuad * mesh.total_area() / (plan.length * plan.length));
+  const double most_pieces = kPieces + kPiecesPerQuad * mesh.total_area() / (plan.length * plan.length);
+  const double longest = affordable_length(mesh, wanted, most_pieces);
   std::vector<EdgeSet> chain_edges;
   for (const CountedChain& chain : chains) chain_edges.push_back(chain.edges);
-  BisectedMesh fine = bisect_long_edges(mesh, longest, marked.ends, chain_edges);
+  BisectedMesh fine = bisect_long_edges(mesh, longest, marked.ends, chain_edges, kSplitsPerPiece * most_pieces);
   context.checkpoint();
   plan.mesh = std::move(fine.mesh);
   plan.guides = guides_on_edges(plan.mesh, fine, marked.guides);

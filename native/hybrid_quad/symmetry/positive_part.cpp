@@ -198,6 +198,19 @@ PositivePart composed(PositivePart second, const PositivePart& first) {
   return second;
 }
 
+/// Images of an edge on the line in which two planes meet coincide, and four faces meet there.
+void refuse_edges_in_two_planes(const TriangleMesh& mesh, PlaneSet planes) {
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!mesh.is_boundary(h)) continue;
+    const Vector3 &a = mesh.position(mesh.from(h)), &b = mesh.position(mesh.to(h));
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis) count += has_plane(planes, axis) && a[axis] == 0 && b[axis] == 0;
+    if (count > 1)
+      throw InputError("symmetry_edge_in_two_planes", "The surface has an edge on the line in which two mirror planes meet: "
+                                                      "its four mirror images would have that edge in common.");
+  }
+}
+
 }  // namespace
 
 PositivePart positive_part(const TriangleMesh& mesh, PlaneSet planes) {
@@ -209,6 +222,7 @@ PositivePart positive_part(const TriangleMesh& mesh, PlaneSet planes) {
     any = true;
   }
   if (!any) throw InternalError("symmetry", "no plane to cut at");
+  refuse_edges_in_two_planes(part.mesh, planes);
   return part;
 }
 
