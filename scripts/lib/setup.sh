@@ -45,9 +45,9 @@ python_environment() {
   fi
   local stamp=$VENV/.hybrid_quad_requirements
   if [ ! -e "$stamp" ] || [ "$ROOT/pyproject.toml" -nt "$stamp" ]; then
-    say "installing Python packages into .venv: scikit-build-core pybind11 numpy meshio tqdm pytest, and for batches and tests pillow distributed openjd-cli trimesh"
+    say "installing Python packages into .venv: scikit-build-core pybind11 numpy meshio tqdm pytest, and for batches and tests pillow scipy distributed openjd-cli trimesh"
     "$VENV/bin/pip" install -q "scikit-build-core>=0.10" "pybind11>=2.12" "numpy>=1.24" "meshio>=5.3" "tqdm>=4.60" \
-      "pytest>=7" "pytest-timeout>=2.1" "pillow>=9.4" "distributed>=2024.1" "openjd-cli>=0.8,<1" "trimesh>=4,<6"
+      "pytest>=7" "pytest-timeout>=2.1" "pillow>=9.4" "scipy>=1.10" "distributed>=2024.1" "openjd-cli>=0.8,<1" "trimesh>=4,<6"
     touch "$stamp"
   fi
 }
