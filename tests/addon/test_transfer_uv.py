@@ -136,5 +136,5 @@ def test_split_models_are_cut_where_they_were_split():
     set_uv(split.data.uv_layers.new(name="Map"), whole)
     split.hybrid_quad.quads = 1000
     result = remesh()
-    assert stretch_of(result).max() < 2 * stretch_of(split).max()  # a quad over two islands has many times that
+    assert stretch_of(result).max() < 1.5 * stretch_of(split).max()
     assert hybrid_quad.check(points_of(result), polygons_of(result)) == []

@@ -50,7 +50,9 @@ TEST(Mend, LeavesGoodMeshesAlone) {
   Sheet sheet;
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   Smoother smoother(piece, SmootherOptions{});
-  EXPECT_EQ(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}).mended, 0);
+  const MendReport report = mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{});
+  EXPECT_EQ(report.mended, 0);
+  EXPECT_EQ(report.placed, 0);
   EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
 }
 

@@ -27,7 +27,8 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   improve_.guides = &guides_;
   if (wishes.most_stretch > 1) improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;
-  if (!wishes.density.empty()) {
+  // What curvature, a chord error or frames ask for is held less firmly than what somebody painted: shape is worth more.
+  if (!options.density.empty() && wishes.most_stretch <= 1) {
     improve_.asked_lengths = &plan.target;
     improve_.area_weight = std::max(improve_.area_weight, kWeightOfSizes * options.size_fidelity);
   }
