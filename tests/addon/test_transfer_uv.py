@@ -67,7 +67,7 @@ def test_no_face_lies_in_two_islands(name, follows_seams):
     result = remesh()
     assert_sound(result)
     # A face with corners of two islands, or from both sides of a seam, would be stretched many times as much as any other.
-    assert stretch_of(result).max() < 1.5 * stretch_of(source).max()
+    assert stretch_of(result).max() < 1.25 * stretch_of(source).max()
 
     # The map is cut where the source's is: about as long, not everywhere.
     def cut_length(obj):
@@ -136,5 +136,5 @@ def test_split_models_are_cut_where_they_were_split():
     set_uv(split.data.uv_layers.new(name="Map"), whole)
     split.hybrid_quad.quads = 1000
     result = remesh()
-    assert stretch_of(result).max() < 1.5 * stretch_of(split).max()
+    assert stretch_of(result).max() < 1.25 * stretch_of(split).max()
     assert hybrid_quad.check(points_of(result), polygons_of(result)) == []

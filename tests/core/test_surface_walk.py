@@ -57,7 +57,7 @@ def test_a_face_across_the_only_seam_of_an_island_stays_on_one_side(is_split):
         angle = middle + np.array([-0.25, 0.25, 0.25, -0.25])
         points = on_tube(angle, np.array([1.0, 1.0, 1.5, 1.5]))
         corners = walk.corner_places(
-            walls, places_on(mesh, on_tube([middle], 1.25)), points[None], places_on(mesh, points), np.array([0.6])
+            walls, places_on(mesh, on_tube([middle], 1.25)), points[None], np.arange(4)[None], places_on(mesh, points)
         )
         values = corners.values(mesh.corners, places, is_extended=True)
         expected = angle if middle > 0 else angle + 2 * np.pi
@@ -67,6 +67,75 @@ def test_a_face_across_the_only_seam_of_an_island_stays_on_one_side(is_split):
         assert inside[:, 0].min() > -1e-9 and inside[:, 0].max() < 2 * np.pi + 1e-9
 
 
+def folded(angle: float) -> tuple[TriangleMesh, np.ndarray]:
+    """Two squares that meet at a fold along y, each an island that is its own plane to scale."""
+    away = np.array([-np.cos(angle), 0, np.sin(angle)])
+    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), away, away + np.array([0, 1, 0])])
+    triangles = np.array([(0, 1, 2), (0, 2, 3), (4, 0, 3), (4, 3, 5)])
+    places = np.array(
+        [(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1), (9, 0), (10, 0), (10, 1), (9, 0), (10, 1), (9, 1)], float
+    )
+    return TriangleMesh(points, triangles, np.arange(12).reshape(4, 3), np.arange(4)), places
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0, 2.0, 3.0])
+def test_beyond_a_fold_nothing_is_stretched(angle):
+    """Neither a face whose corners lie across the fold, nor two that share them; and these do not come apart."""
+    mesh, places = folded(angle)
+    walk = SurfaceWalk(mesh)
+    walls = walk.walls(places, 1e-6)
+    assert walls.sum() == 2 and len(np.unique(walk.islands(walls))) == 2
+    out = 0.2 * mesh.points[4]
+    points = np.array(
+        [
+            (0.3, 0.2, 0),
+            (0.3, 0.5, 0),
+            *(out + np.array([(0, 0.5, 0), (0, 0.2, 0)])),
+            (0.3, 0.8, 0),
+            out + np.array([0, 0.8, 0]),
+        ]
+    )
+    faces = np.array([(0, 1, 2, 3), (1, 4, 5, 2)])
+    middles = places_on(mesh, np.array([(0.05, 0.35, 0), (0.05, 0.65, 0)]))
+    unbounded = places_on(mesh, points)
+    corners = walk.corner_places(walls, middles, points[faces], faces, unbounded.among(faces.ravel()))
+    assert sorted(corners.beyond) == [2, 3, 6, 7]
+    values = corners.values(mesh.corners, places, is_extended=True).reshape(2, 4, 2)
+    assert np.allclose(values[0, 2], values[1, 3])
+    assert np.allclose(values[0, 2], (out[0], 0.5))
+    on_surface = np.linalg.norm(np.roll(points[faces], -1, axis=1) - points[faces], axis=2)
+    assert (np.linalg.norm(np.roll(values, -1, axis=1) - values, axis=2) <= on_surface + 1e-12).all()
+
+
+def test_on_the_border_the_value_is_that_of_the_border():
+    mesh, places = folded(1.0)
+    bent = places**2  # not linear, so that what goes on from the middle arrives elsewhere
+    walk = SurfaceWalk(mesh)
+    walls = walk.walls(places, 1e-6)
+    points = np.array([(0.3, 0.25, 0), (0.3, 0.75, 0), (0, 0.75, 0), (0, 0.25, 0)])
+    beyond = Places(np.full(4, 2), np.array([(0, 0.25, 0.75), (0, 0.25, 0.75), (0, 0.25, 0.75), (0, 0.75, 0.25)]))
+    middle = places_on(mesh, np.array([(0.15, 0.5, 0)]))
+    corners = walk.corner_places(walls, middle, points[None], np.arange(4)[None], beyond)
+    values = corners.values(mesh.corners, bent, is_extended=True)
+    assert np.allclose(values[2:], [(0, 0.75), (0, 0.25)])
+
+
+@pytest.mark.parametrize("height", [0.1, 1e-6, 0.0])
+def test_slopes_of_slivers_are_not_followed(height):
+    points = np.array([(0, 0, 0), (1, 0, 0), (0.5, height, 0)])
+    mesh = TriangleMesh(points, np.array([(0, 1, 2)]), np.array([(0, 1, 2)]), np.array([0]))
+    places = np.array([(0, 0), (1, 0), (0.5, 0.2)])
+    face = np.array([(0.4, -0.2, 0), (0.6, -0.2, 0), (0.6, 0.2, 0), (0.4, 0.2, 0)])
+    elsewhere = Places(np.full(4, -1), np.full((4, 3), 1 / 3))
+    middle = Places(np.array([0]), np.array([(0.5, 0.5, 0)]))
+    corners = SurfaceWalk(mesh).corner_places(np.ones((1, 3), bool), middle, face[None], np.arange(4)[None], elsewhere)
+    values = corners.values(mesh.corners, places, is_extended=True)
+    if height == 0.1:
+        assert np.allclose(values, face[:, :2] * (1, 2))
+    else:
+        assert (values >= 0).all() and (values <= (1, 0.2)).all()
+
+
 def test_without_walls_nothing_lies_beyond_any():
     mesh, _ = tube(False)
     walk = SurfaceWalk(mesh)
@@ -74,7 +143,8 @@ def test_without_walls_nothing_lies_beyond_any():
     assert not walls.any()
     points = on_tube(np.array([-0.25, 0.25, 0.25, -0.25]), np.array([1.0, 1.0, 1.5, 1.5]))
     unbounded = places_on(mesh, points)
-    corners = walk.corner_places(walls, places_on(mesh, on_tube([0.0], 1.25)), points[None], unbounded, np.array([0.6]))
+    middle = places_on(mesh, on_tube([0.0], 1.25))
+    corners = walk.corner_places(walls, middle, points[None], np.arange(4)[None], unbounded)
     assert len(corners.beyond) == 0
     assert np.array_equal(corners.places.weights, unbounded.weights)
 

@@ -87,17 +87,40 @@ def weights_in(points: FloatArray, corners: FloatArray) -> FloatArray:
     points : (k, 3) float64
     corners : (k, 3, 3) float64
     """
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    normal = np.cross(b - a, c - a)
-    area = (normal**2).sum(axis=1)
-    parts = [np.cross(end - begin, points - begin) for begin, end in ((b, c), (c, a), (a, b))]
-    weights = np.stack([np.maximum((part * normal).sum(axis=1), 0) for part in parts], axis=1)
-    flat = ~(area > 0)
+    weights = np.maximum(_areas_opposite(points, corners), 0)
+    flat = ~(_squared_area(corners) > 0)
     if flat.any():
         weights[flat] = _weights_on_longest_side(points[flat], corners[flat])
     total = weights.sum(axis=1, keepdims=True)
     shares: FloatArray = np.divide(weights, total, out=np.full_like(weights, 1 / 3), where=total > 0)
     return shares
+
+
+def plane_weights(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """(k, 3) shares of the corners, in sum 1, at the points' projections on the planes of triangles; not finite for flat ones.
+
+    Parameters
+    ----------
+    points : (k, 3) float64
+    corners : (k, 3, 3) float64
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        weights: FloatArray = _areas_opposite(points, corners) / _squared_area(corners)[:, None]
+    return weights
+
+
+def _areas_opposite(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """(k, 3) signed areas between a point's projection and the sides opposite to each corner, times the triangle's own."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    normal = np.cross(b - a, c - a)
+    parts = [np.cross(end - begin, points - begin) for begin, end in ((b, c), (c, a), (a, b))]
+    return np.stack([(part * normal).sum(axis=1) for part in parts], axis=1)
+
+
+def _squared_area(corners: FloatArray) -> FloatArray:
+    """(k,) as `_areas_opposite` counts them."""
+    squared: FloatArray = (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) ** 2).sum(axis=1)
+    return squared
 
 
 def _weights_on_longest_side(points: FloatArray, corners: FloatArray) -> FloatArray:

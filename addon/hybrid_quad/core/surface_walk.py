@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .graph_components import component_labels
 from .mesh_arrays import FloatArray
-from .surface_places import Indices, Places, TriangleMesh, weights_in
+from .surface_places import Indices, Places, TriangleMesh, plane_weights, weights_in
 from .surface_points import nearest_in_triangles, parts
 
 BoolArray = npt.NDArray[np.bool_]
@@ -21,6 +22,12 @@ BoolArray = npt.NDArray[np.bool_]
 # What is looked at together: bounds the memory.
 _FACES = 4000
 _PAIRS = 500_000
+
+# Triangles are reached when they come as near to a face's middle as its farthest corner, and a little more.
+_REACH = 1.01
+
+# Of a face's size: the slope of a value across a triangle less high than this is that of its rounding.
+_THIN = 1e-4
 
 
 class CornerPlaces(NamedTuple):
@@ -32,19 +39,28 @@ class CornerPlaces(NamedTuple):
         Of all corners, face by face.
     beyond : (k,) int64
         Corners that lie beyond a wall; their place is the nearest one on their face's side of it.
-    mirrored : Places
-        For these, the place as far from the wall on the inside as the corner is on the outside.
+    kept : (k,) float64
+        For these, how much of the value at their place counts where values go on beyond the walls; the farther out, the less.
+    extended : Places
+        The rest: what a corner differs by from its place, in the plane of the triangle at its face's middle. Shares may be negative.
+    shared : (k,) int64
+        Alike for those of one vertex that have the same place: where values go on beyond the walls, they get the mean.
     """
 
     places: Places
     beyond: Indices
-    mirrored: Places
+    kept: FloatArray
+    extended: Places
+    shared: Indices
 
     def values(self, indices: Indices, values: FloatArray, *, is_extended: bool) -> FloatArray:
-        """As :meth:`Places.values`; with `is_extended`, corners beyond a wall get what goes on linearly from inside."""
+        """As :meth:`Places.values`; with `is_extended`, corners beyond a wall get what goes on linearly from the middle."""
         result = self.places.values(indices, values)
-        if is_extended:
-            result[self.beyond] = 2 * result[self.beyond] - self.mirrored.values(indices, values)
+        if is_extended and len(self.beyond):
+            extended = self.kept[:, None] * result[self.beyond] + self.extended.values(indices, values)
+            total = np.zeros((self.shared.max() + 1, values.shape[1]))
+            np.add.at(total, self.shared, extended)
+            result[self.beyond] = (total / np.bincount(self.shared)[:, None])[self.shared]
         return result
 
 
@@ -100,8 +116,13 @@ class SurfaceWalk:
         vertices = self.mesh.vertices.ravel()
         return np.stack([vertices[side], vertices[_next_side(side)]], axis=1)
 
+    def islands(self, walls: BoolArray) -> Indices:
+        """(t,) alike for triangles that can be reached from each other without crossing a wall."""
+        side = np.flatnonzero((self._opposite >= 0) & ~walls.ravel())
+        return component_labels(len(self.mesh.vertices), side // 3, self._opposite[side] // 3)
+
     def corner_places(
-        self, walls: BoolArray, middles: Places, points: FloatArray, unbounded: Places, radii: FloatArray
+        self, walls: BoolArray, middles: Places, points: FloatArray, vertices: Indices, unbounded: Places
     ) -> CornerPlaces:
         """Places for the corners of faces, on the side of the walls where the faces' middles are.
 
@@ -111,37 +132,54 @@ class SurfaceWalk:
         middles : Places
             Of the f faces.
         points : (f, m, 3) float64
-            Their corners.
+            Their corners; how far these are from the middle is how far is looked.
+        vertices : (f, m) int64
+            The vertex that each corner is.
         unbounded : Places
             Of the f * m corners, whatever the walls.
-        radii : (f,) float64
-            How far from the middles to look.
         """
         count, each = points.shape[:2]
-        triangles, weights = unbounded.triangles.copy(), unbounded.weights.copy()
+        places = Places(unbounded.triangles.copy(), unbounded.weights.copy())
         centers = middles.values(self.mesh.vertices, self.mesh.points)
-        unbounded_points = unbounded.values(self.mesh.vertices, self.mesh.points)
-        beyond, mirrored_triangles, mirrored_weights = [], [], []
+        radii = _REACH * np.linalg.norm(points - centers[:, None], axis=2).max(axis=1)
+        found = [np.zeros(0, np.int64)]
         for first in range(0, count, _FACES):
             part = slice(first, first + _FACES)
             owners, reached = self._reached(walls, middles.triangles[part], centers[part], radii[part])
             own = np.arange(first * each, min(first + _FACES, count) * each)
-            wanted = (own // each - first) * len(self.mesh.vertices) + triangles[own]
+            wanted = (own // each - first) * len(self.mesh.vertices) + unbounded.triangles[own]
             own = own[~_is_in(wanted, owners * len(self.mesh.vertices) + reached)]
-            face = own // each - first
-            inside = self._nearest_reached(points.reshape(-1, 3)[own], face, owners, reached)
-            inside_points = inside.values(self.mesh.vertices, self.mesh.points)
-            reflection = 2 * inside_points - unbounded_points[own]
-            mirrored = self._nearest_reached(reflection, face, owners, reached)
-            triangles[own], weights[own] = inside
-            beyond.append(own)
-            mirrored_triangles.append(mirrored.triangles)
-            mirrored_weights.append(mirrored.weights)
-        none = Places(np.zeros(0, np.int64), np.zeros((0, 3)))
-        if not beyond:
-            return CornerPlaces(Places(triangles, weights), none.triangles, none)
-        mirrored = Places(np.concatenate(mirrored_triangles), np.concatenate(mirrored_weights))
-        return CornerPlaces(Places(triangles, weights), np.concatenate(beyond), mirrored)
+            inside = self._nearest_reached(points.reshape(-1, 3)[own], own // each - first, owners, reached)
+            places.triangles[own], places.weights[own] = inside
+            found.append(own)
+        beyond = np.concatenate(found)
+        face = beyond // each
+        kept, extended = self._extended(
+            points.reshape(-1, 3)[beyond], places.among(beyond), middles.among(face), radii[face]
+        )
+        keys = vertices.ravel()[beyond] * len(self.mesh.vertices) + places.triangles[beyond]
+        return CornerPlaces(places, beyond, kept, extended, np.unique(keys, return_inverse=True)[1].reshape(-1))
+
+    def _extended(
+        self, points: FloatArray, inside: Places, middles: Places, radii: FloatArray
+    ) -> tuple[FloatArray, Places]:
+        """What counts at points beyond a wall, of the values inside and of those of the triangles at the middles.
+
+        On the border that is the value inside, as far out as from the middle it is linear from the middle. Either is right on a plane;
+        where the surface bends, the former would stretch what is far out and the latter tear what is near.
+        """
+        corners = self.mesh.points[self.mesh.vertices[middles.triangles]]
+        sides = np.roll(corners, -1, axis=1) - corners
+        longest = np.linalg.norm(sides, axis=2).max(axis=1)
+        area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        has_slope = area > _THIN * radii * longest
+        inside_points, centers = (each.values(self.mesh.vertices, self.mesh.points) for each in (inside, middles))
+        out, away = (np.linalg.norm(points - each, axis=1) for each in (inside_points, centers))
+        kept = np.where(has_slope, 1 - out / np.maximum(np.maximum(out, away), np.finfo(float).tiny), 1)
+        weights = np.zeros((len(points), 3))
+        at_points, at_places = (plane_weights(each[has_slope], corners[has_slope]) for each in (points, inside_points))
+        weights[has_slope] = at_points - kept[has_slope, None] * at_places
+        return kept, Places(middles.triangles, weights)
 
     def _reached(
         self, walls: BoolArray, starts: Indices, centers: FloatArray, radii: FloatArray

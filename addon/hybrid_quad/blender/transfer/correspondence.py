@@ -113,13 +113,16 @@ class Correspondence:
         edges = self.walk.wall_edges(walls)
         near = np.zeros(0, np.int64)
         if len(edges):
-            near = np.flatnonzero(NearestEdges(self.source.points, edges).find(self._middles, 1.01 * self._radii) >= 0)
-        middles = self.faces.among(near)
+            # Corners may be beyond a wall that is farther away: across a thin part from the middle.
+            islands = self.walk.islands(walls)
+            strays = islands[of_corners.triangles].reshape(-1, 4) != islands[self.faces.triangles][:, None]
+            is_near = NearestEdges(self.source.points, edges).find(self._middles, 1.01 * self._radii) >= 0
+            near = np.flatnonzero(is_near | strays.any(axis=1))
         corner = (4 * near[:, None] + np.arange(4)).ravel()
-        centers = middles.values(self.source.vertices, self.source.points)
-        points = self.points[self.quads[near]]
-        radii = 1.01 * np.linalg.norm(points - centers[:, None], axis=2).max(axis=1)
-        found = self.walk.corner_places(walls, middles, points, of_corners.among(corner), radii)
+        quads = self.quads[near]
+        found = self.walk.corner_places(
+            walls, self.faces.among(near), self.points[quads], quads, of_corners.among(corner)
+        )
         triangles, weights = of_corners.triangles.copy(), of_corners.weights.copy()
         triangles[corner], weights[corner] = found.places
-        return CornerPlaces(Places(triangles, weights), corner[found.beyond], found.mirrored)
+        return found._replace(places=Places(triangles, weights), beyond=corner[found.beyond])
