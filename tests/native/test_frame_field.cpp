@@ -8,6 +8,7 @@
 
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/smooth_connection.h"
 #include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/split_cones.h"
 #include "hybrid_quad/grid_algebra/quarter_turn.h"
@@ -142,7 +143,7 @@ TEST(FrameField, MatchingsAndConesOfTurnedRowsAreTheSame) {
       du[f] = dv[f];
       dv[f] = -u;
     }
-  const FrameField again = frame_field_from_rows(surface, du, dv);
+  const FrameField again = frame_field_from_rows(surface, FaceAngles(surface.mesh), du, dv);
   EXPECT_TRUE(violations_of(again, surface).empty());
   EXPECT_EQ(again.cone_index, field.cone_index);
   for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
@@ -164,6 +165,56 @@ TEST(FrameField, NeedlesAndFacesWithoutAreaDoNoHarm) {
   const FrameField field = solved(collapsed);
   EXPECT_EQ(index_sum(field), 8);
   for (int f = 0; f < collapsed.mesh.face_count(); ++f) EXPECT_TRUE(field.du[f].allFinite() && field.dv[f].allFinite());
+}
+
+/// Every vertex moved along the normal by up to so much, each by another part.
+TriangleMesh roughened(const TriangleMesh& mesh, double by) {
+  std::vector<Vector3> normal(mesh.vertex_count(), Vector3::Zero()), positions = mesh.positions();
+  for (int h = 0; h < mesh.halfedge_count(); ++h) normal[mesh.from(h)] += mesh.area_normal(h / 3);
+  for (int v = 0; v < mesh.vertex_count(); ++v) positions[v] += by * std::sin(37.0 * v) * normal[v].normalized();
+  return {positions, mesh.faces()};
+}
+
+TEST(FrameField, DetailBelowAQuadMakesNoCones) {
+  // Triangles of .07, quads of .3, and angles at the vertices that miss a full turn by up to 100 degrees.
+  const WorkingSurface rough = surface_of(roughened(test::icosphere(4), 0.05), 0.3, 200);
+  const FrameField field = solved(rough);
+  EXPECT_TRUE(violations_of(field, rough).empty());
+  EXPECT_EQ(field.cone_count(), 8);
+  FrameFieldOptions by_vertex;
+  by_vertex.curvature_spread = 0;
+  EXPECT_GT(solve_frame_field(rough, by_vertex, RunContext{}).cone_count(), 40);
+}
+
+TEST(SmoothConnection, TurnsMoveCurvatureToWhereThereIsLess) {
+  for (const bool is_closed : {true, false}) {
+    const TriangleMesh smooth = is_closed ? test::icosphere(4) : test::flat_grid(20, 20, 1.4, 1.4);
+    const WorkingSurface rough = surface_of(roughened(smooth, 0.03), 0.3, 200);
+    const TriangleMesh& mesh = rough.mesh;
+    const FaceAngles angles(mesh);
+    const std::vector<double> turns = turns_for_average_curvature(rough, angles, 1);
+    std::vector<double> own(mesh.vertex_count(), 2 * M_PI), turning(mesh.vertex_count(), 0);
+    for (int h = 0; h < mesh.halfedge_count(); ++h) {
+      own[mesh.from(h)] -= angles.corner(h);
+      turning[mesh.to(h)] += turns[h];  // counterclockwise around a vertex one leaves a face by the half-edge that ends there
+      EXPECT_EQ(turns[h], mesh.is_boundary(h) ? 0 : -turns[mesh.opposite(h)]);
+    }
+    double sum = 0, own_square = 0, averaged_square = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      if (mesh.is_boundary_vertex(v)) {
+        EXPECT_EQ(turning[v], 0);
+        continue;
+      }
+      sum += turning[v];
+      own_square += own[v] * own[v];
+      averaged_square += (own[v] + turning[v]) * (own[v] + turning[v]);
+    }
+    EXPECT_NEAR(sum, 0, 1e-9);
+    EXPECT_LT(averaged_square, 0.05 * own_square);
+  }
+  // An even sphere's curvature is as even as it can be.
+  const WorkingSurface sphere = surface_of(test::icosphere(4), 0.3, 200);
+  for (const double turn : turns_for_average_curvature(sphere, FaceAngles(sphere.mesh), 1)) EXPECT_LT(std::abs(turn), 0.005);
 }
 
 TEST(FrameField, StrongConesAreSplit) {

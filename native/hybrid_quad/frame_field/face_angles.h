@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "hybrid_quad/mesh/triangle_mesh.h"
@@ -27,8 +28,13 @@ class FaceAngles {
   /// What to add to a direction of h's face to have it in the opposite face (Levi-Civita). \pre h is interior
   double transport(int h, int opposite) const;
 
+  /// By how much frames are expected to turn beyond that as they cross h: quarters are counted from there. \pre h is interior
+  double expected_turn(int h) const { return expected_turn_.empty() ? 0 : expected_turn_[h]; }
+  /// \param turns  3 #F, opposite for opposite half-edges
+  void expect_turns(std::vector<double> turns) { expected_turn_ = std::move(turns); }
+
  private:
-  std::vector<double> corner_, direction_;
+  std::vector<double> corner_, direction_, expected_turn_;
 };
 
 }  // namespace hybrid_quad

@@ -89,9 +89,9 @@ bool is_combed(const FrameField& field, const TriangleMesh& mesh) {
 
 }  // namespace
 
-FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vector3> du, std::vector<Vector3> dv) {
+FrameField frame_field_from_rows(const WorkingSurface& surface, const FaceAngles& angles, std::vector<Vector3> du,
+                                 std::vector<Vector3> dv) {
   const TriangleMesh& mesh = surface.mesh;
-  const FaceAngles angles(mesh);
   const std::vector<double> directions = frame_directions(mesh, du, dv);
   FrameField field;
   field.du = std::move(du);

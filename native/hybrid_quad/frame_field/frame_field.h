@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hybrid_quad/frame_field/face_angles.h"
 #include "hybrid_quad/working_surface/working_surface.h"
 
 namespace hybrid_quad {
@@ -43,7 +44,9 @@ struct FrameField {
 struct FrameFieldOptions {
   int sweeps = 10;         ///< relaxation sweeps of the finest level
   int coarsest = 300;      ///< unknowns of the level that is solved directly
-  /// Diffusion afterwards, in squared quad edges, one step each: what is smaller than a quad makes no cones.
+  /// How far the surface's curvature is averaged, in quad edges: detail that is smaller makes no cones.
+  double curvature_spread = 1;
+  /// Diffusion afterwards, in squared quad edges, one step each.
   std::vector<double> diffusion_times{1.0, 1.0, 1.0};
   /// Likewise for the other solution, which has cones to lose.
   std::vector<double> smoothest_diffusion_times{16.0, 4.0, 1.0, 1.0};
@@ -57,13 +60,15 @@ struct FrameFieldOptions {
 };
 
 /// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1): z = e^{4 i
-/// theta} on faces with the Levi-Civita connection. Solved twice, by multilevel relaxation and from the smoothest field
+/// theta} on faces with a connection of averaged curvature (docs/decisions/0030). Solved twice, by multilevel relaxation and from the smoothest field
 /// without |z| = 1, both finished by diffusion; the one with less energy and fewer cones is kept (docs/decisions/0011).
 /// \post sum of cone indices and of the features' turning agrees with the Euler characteristic (Poincare-Hopf)
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context);
 
 /// Matchings, combing and cone indices of given frames (rows du, dv per face).
-FrameField frame_field_from_rows(const WorkingSurface& surface, std::vector<Vector3> du, std::vector<Vector3> dv);
+/// \param angles  of the surface, with the turns that matchings are nearest to
+FrameField frame_field_from_rows(const WorkingSurface& surface, const FaceAngles& angles, std::vector<Vector3> du,
+                                 std::vector<Vector3> dv);
 
 /// Irregular vertices inside the surface that the field has because of features: vertices on them where, sector by sector
 /// and at least one in each, other than four quads meet; and one beside every acute tip, a sector in which frames leave no

@@ -42,7 +42,7 @@ FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const 
     const FrameTurn back = turn_across(mesh, angles, directions, o);
     return {inverse_turns(back.quarters), -back.angle};
   }
-  const int quarters = nearest_quarters(angle);
+  const int quarters = nearest_quarters(angle - angles.expected_turn(h));
   return {wrap_turns(quarters), angle - quarters * kQuarter};
 }
 

@@ -10,14 +10,14 @@ namespace hybrid_quad {
 /// How a frame turns from half-edge h's face to the opposite one: quarters that only rename its axes, and the rest.
 struct FrameTurn {
   int quarters = 0;   ///< (u, v) over there = turned((u, v) here, quarters), wrapped to 0..3
-  double angle = 0;   ///< rotation of the frame as a cross, in [-pi/4, pi/4], counterclockwise
+  double angle = 0;   ///< rotation of the frame as a cross, counterclockwise, within pi/4 of what is expected
 };
 
 /// Direction of every frame's u axis, counterclockwise from its face's half-edge 0: the rotation nearest to the frame.
 /// Frames that say nothing (zero, not finite, orientation reversed) are taken along half-edge 0.
 std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
 
-/// The turn nearest to none. \pre h is interior
+/// The turn nearest to the expected one. \pre h is interior
 FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int h);
 
 /// The turn that goes with a given matching, in [-pi, pi]: frames that were changed after they were matched.

@@ -8,6 +8,7 @@
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/smooth_connection.h"
 #include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/soft_alignment.h"
 #include "hybrid_quad/frame_field/split_cones.h"
@@ -67,8 +68,8 @@ void pull_softly(const std::vector<Complex>& pulls, CrossUnknowns& cross) {
 
 CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles, const FrameFieldOptions& options) {
   const TriangleMesh& mesh = surface.mesh;
-  std::vector<double> turns;
-  if (options.turn_for_lengths > 0) turns = turns_for_lengths(surface);
+  std::vector<double> for_lengths;
+  if (options.turn_for_lengths > 0) for_lengths = turns_for_lengths(surface);
   CrossUnknowns cross;
   fix_faces_at_features(surface, angles, cross);
   std::vector<double> area(mesh.face_count());
@@ -80,7 +81,7 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
     const int f = h / 3, g = o / 3, p = cross.unknown[f], q = cross.unknown[g];
     if (p < 0 && q < 0) continue;
     const double w = link_stiffness(surface, h, area[f] + area[g]);
-    const double turn = turns.empty() ? 0.0 : options.turn_for_lengths * turns[h];
+    const double turn = angles.expected_turn(h) + (for_lengths.empty() ? 0.0 : options.turn_for_lengths * for_lengths[h]);
     const Complex carry = std::polar(w, 4 * (angles.transport(h, o) + turn));  // z_g from z_f
     if (p >= 0) system.diagonal[p] += w;
     if (q >= 0) system.diagonal[q] += w;
@@ -174,7 +175,8 @@ std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const Face
 
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
-  const FaceAngles angles(mesh);
+  FaceAngles angles(mesh);
+  angles.expect_turns(turns_for_average_curvature(surface, angles, options.curvature_spread));
   const CrossUnknowns cross = assemble_cross_system(surface, angles, options);
   context.checkpoint(0.1);
   std::array<Solution, 2> both = both_solutions(surface, angles, cross, options, context);
@@ -188,7 +190,7 @@ FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOpti
     du[f] = c * basis.along + s * basis.across;
     dv[f] = c * basis.across - s * basis.along;
   }
-  FrameField field = frame_field_from_rows(surface, std::move(du), std::move(dv));
+  FrameField field = frame_field_from_rows(surface, angles, std::move(du), std::move(dv));
   field.choice = {both[0].record, both[1].record, kept};
   return field;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_quad/frame_field/averaging_steps.h"
 #include "hybrid_quad/frame_field/face_angles.h"
 
 namespace hybrid_quad {
@@ -39,7 +40,10 @@ std::vector<Bending> bending_of_faces(const WorkingSurface& surface) {
   return bending;
 }
 
-/// One step of averaging with the neighbours. On even triangles a step spreads by 0.35 edges (standard deviation).
+constexpr double kSpread = 0.73;  // quad edges
+constexpr double kStep = 0.35;    // edges, on even triangles
+
+/// One step of averaging with the neighbours.
 void spread(const WorkingSurface& surface, std::vector<Bending>& bending) {
   const std::vector<Bending> before = bending;
   for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
@@ -52,19 +56,6 @@ void spread(const WorkingSurface& surface, std::vector<Bending>& bending) {
     bending[f].tensor /= 4;
     bending[f].area /= 4;
   }
-}
-
-/// Steps that spread by 0.73 quad edges to either side.
-int averaging_steps(const WorkingSurface& surface) {
-  constexpr double kSpread = 0.73, kStep = 0.35, kMostSteps = 200;
-  double square = 0;  // of a triangle's edge, in quad edges
-  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
-    const double edge = surface.mesh.edge_length(h) / surface.target_length[h / 3];
-    square += edge * edge;
-  }
-  square /= std::max(1, surface.mesh.halfedge_count());
-  const double steps = kSpread * kSpread / (kStep * kStep * square);
-  return steps < kMostSteps ? static_cast<int>(std::ceil(steps)) : static_cast<int>(kMostSteps);
 }
 
 PrincipalCurvature principal(const Bending& bending, const FaceBasis& axes) {
@@ -87,7 +78,7 @@ PrincipalCurvature principal(const Bending& bending, const FaceBasis& axes) {
 
 std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface) {
   std::vector<Bending> bending = bending_of_faces(surface);
-  for (int step = averaging_steps(surface); step > 0; --step) spread(surface, bending);
+  for (int step = averaging_steps(surface, kSpread, kStep); step > 0; --step) spread(surface, bending);
   std::vector<PrincipalCurvature> result(bending.size());
   for (int f = 0; f < surface.mesh.face_count(); ++f) result[f] = principal(bending[f], face_basis(surface.mesh, f));
   return result;

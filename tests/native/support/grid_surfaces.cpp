@@ -39,7 +39,7 @@ FrameField constant_frames(const WorkingSurface& surface, const Vector3& du, con
     rows_u.push_back(du - n * n.dot(du));
     rows_v.push_back(dv - n * n.dot(dv));
   }
-  return frame_field_from_rows(surface, rows_u, rows_v);
+  return frame_field_from_rows(surface, FaceAngles(surface.mesh), rows_u, rows_v);
 }
 
 FrameField torus_frames(const WorkingSurface& surface, double around, double along, double major) {
@@ -61,7 +61,7 @@ FrameField torus_frames(const WorkingSurface& surface, double around, double alo
     rows_u.push_back(du);
     rows_v.push_back(dv);
   }
-  return frame_field_from_rows(surface, rows_u, rows_v);
+  return frame_field_from_rows(surface, FaceAngles(surface.mesh), rows_u, rows_v);
 }
 
 FrameField smooth_frames(const WorkingSurface& surface, double h) {
