@@ -158,6 +158,28 @@ TEST(Features, ASmallClearLoopStaysWhereNoiseGoes) {
   EXPECT_EQ(regions(detect(with_noise(step, 0.05, 5), options)), regions(detect(step, options)));
 }
 
+TEST(Features, FoldsThatFenceInLessThanAQuadAreNone) {
+  // A field of cells of length 1; quads of length 3. In its middle every other vertex is raised: each triangle there is its own facet.
+  const TriangleMesh grid = test::flat_grid(30, 30, 30, 30);
+  const auto raised = [&](const auto& height) {
+    std::vector<Vector3> positions = grid.positions();
+    for (Vector3& p : positions) p.z() = height(std::lround(p.x()), std::lround(p.y()));
+    return TriangleMesh(positions, grid.faces());
+  };
+  FeatureOptions options;
+  options.minimum_length = 9;
+  const auto features_inside = [&](const TriangleMesh& m) {
+    const FeatureGraph g = detect(m, options);
+    int count = 0;
+    for (const auto& curve : g.curves) count += !curve.boundary;
+    return count;
+  };
+  const auto in_the_middle = [](long x, long y) { return x >= 12 && x <= 18 && y >= 12 && y <= 18; };
+  EXPECT_EQ(features_inside(raised([&](long x, long y) { return in_the_middle(x, y) && (x + y) % 2 ? 0.7 : 0.0; })), 0);
+  // A plateau of two quads by two.
+  EXPECT_GT(features_inside(raised([&](long x, long y) { return in_the_middle(x, y) ? 2.0 : 0.0; })), 0);
+}
+
 TEST(Features, WeakEdgesBridgeAGapBetweenStrongOnes) {
   // A wedge whose fold is soft in the middle: 60 degrees at both ends, 30 degrees at half its length.
   const int n = 16;

@@ -6,6 +6,7 @@
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/features/crease_clarity.h"
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/features/small_facets.h"
 
 namespace hybrid_quad {
 
@@ -15,6 +16,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kSliver = 1e-7;          ///< height over longest edge below which a face's normal is noise
 constexpr double kChainTurn = 45;         ///< degrees that a chain of weak edges may turn at a vertex
 constexpr double kChainShare = 0.5;       ///< longest chain of weak edges, as part of the strong set it continues
+constexpr double kQuadShare = 1.0 / 3;    ///< edge length of a quad, of the minimum length
 constexpr double kSideShare = 1.0 / 6;    ///< how far the sides of a crease are looked at, of the minimum length
 constexpr double kNoClarity = 0.65, kFullClarity = 0.85;  ///< below, an edge says nothing for its set; above, its whole length
 constexpr double kNoiseFactor = 4;        ///< where all else is noise, a set must be this much longer again
@@ -223,12 +225,15 @@ std::vector<int> FeatureDetector::connected_sets(const Measure& measure, std::ve
 
 /// On a sculpt or scan, edges bend by chance, or because triangles are as large as the radius of a ridge.
 void FeatureDetector::weigh_edges(const RunContext& context) {
+  if (std::find(by_angle_.begin(), by_angle_.end(), 1) == by_angle_.end()) return;
   const std::vector<char> barriers = result();
+  const std::vector<char> in_facet = small_facets(mesh_, normal_, barriers, kQuadShare * options_.minimum_length);
   CreaseClarity clarity(mesh_, normal_, barriers, kSideShare * options_.minimum_length);
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
     if ((h & 0xfff) == 0) context.checkpoint(0.4 + 0.2 * h / mesh_.halfedge_count());
     if (!by_angle_[h] || marked_[h] || !stands_for_edge(h)) continue;
-    const double weight = std::clamp((clarity(h) - kNoClarity) / (kFullClarity - kNoClarity), 0.0, 1.0);
+    const bool fences_facet = in_facet[h / 3] || in_facet[mesh_.opposite(h) / 3];
+    const double weight = fences_facet ? 0 : std::clamp((clarity(h) - kNoClarity) / (kFullClarity - kNoClarity), 0.0, 1.0);
     weight_[h] = weight_[opposite_or_self(h)] = weight;
   }
 }

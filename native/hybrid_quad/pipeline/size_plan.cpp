@@ -18,7 +18,7 @@ constexpr double kMostStretch = 1.6;
 constexpr double kMostGiving = 2;
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
-constexpr double kTooCrowded = 0.6, kRoomy = 0.3;
+constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
 
 /// The set of hard guides on the edge of every half-edge, -1: none; empty where there are none at all.
 std::vector<int> guides_on_edges(const TriangleMesh& mesh, const BisectedMesh& fine, const std::vector<int>& guides) {
