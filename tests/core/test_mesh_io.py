@@ -130,7 +130,12 @@ def ply_of_all_kinds(form, faces, name="vertex_indices", index="uint"):
     order = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": ">"}[form]
     points = [(9, 0.5, 0.0, 0), (9, 1.0, 0.1, 0), (9, 1.0, 1.0, 3), (9, 0.0, 1.0, 0), (9, 2.0, 0.0, 0)]
     texcoords = [[0.5] * number for number in range(len(faces))]
-    rows = {"vertex": points, "material": [(7,)], "face": list(zip(faces, texcoords, strict=True)), "edge": [(0, 1), (1, 2)]}
+    rows = {
+        "vertex": points,
+        "material": [(7,)],
+        "face": list(zip(faces, texcoords, strict=True)),
+        "edge": [(0, 1), (1, 2)],
+    }
     head, body = f"ply\nformat {form} 1.0\ncomment element face 7\nobj_info made by hand\n", b""
     for element, (properties, kinds) in PLY_ROWS.items():
         head += f"element {element} {len(rows[element])}\n{properties.format(index, name)}"

@@ -86,7 +86,7 @@ def main(arguments: Sequence[str]) -> int:
             result = task.solve(progress=_printer(options.quiet))
             target = place_result(bpy.context, obj, task, result)
             record = {**result.report, "object": target.name, "source_object": obj.name}
-            if options.picture and picture.can_draw():
+            if options.picture:
                 picture.write_picture(options.picture, result.vertices, result.quads)
             _write_report(options.report, record)
             if options.only_result:
@@ -206,11 +206,7 @@ def _parser() -> argparse.ArgumentParser:
         help="stop with status 4 where Blender takes more memory",
     )
     parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
-    parser.add_argument(
-        "--picture",
-        metavar="FILE.png",
-        help="draw a small picture of the result there, if Blender has Pillow",
-    )
+    parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     parser.add_argument(
         "--end-with-stdin",
