@@ -154,7 +154,10 @@ def check_blender(words: list[str], block: Block) -> None:
     assert script.is_file(), block.place
     sources = [script]
     if script.name == "batch.py":
-        sources = [ROOT / "addon" / "hybrid_quad" / "blender" / name for name in ("command.py", "part_arguments.py")]
+        sources = [
+            ROOT / "addon" / "hybrid_quad" / "blender" / name
+            for name in ("command.py", "case_command.py", "part_arguments.py")
+        ]
     text = "".join(source.read_text() for source in sources)
     for flag in flags(words[words.index("--") + 1 :] if "--" in words else []):
         assert f'"{flag}"' in text, f"{block.place}: {flag}"
