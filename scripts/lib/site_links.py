@@ -1,4 +1,4 @@
-"""A hook of MkDocs: what the pages of docs/ link to elsewhere in the repository becomes part of the site, and docstrings' references links.
+"""A hook of MkDocs: what pages link to elsewhere in the repository becomes part of the site, and docstrings get links.
 
 In the repository links as ``../CONTRIBUTING.md`` lead to a file. The site has such files below ``project/``: Markdown as pages, all
 others as they are; a link to a folder leads to its README. Links to other folders and to hidden files become plain text. A link to
