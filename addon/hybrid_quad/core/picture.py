@@ -27,6 +27,7 @@ _FEW, _MANY = (240, 120, 0), (20, 70, 230)  # three quads or fewer, five or more
 _PALETTE = 64
 _DOTS_IN_A_PIXEL = 1.2  # along each side of a quad
 _DOTS_AT_ONCE = 1_000_000
+_LEVELS = 1 << 28  # of nearness
 
 
 def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> None:
@@ -61,14 +62,15 @@ def draw(vertices: FloatArray, quads: IntArray) -> Pixels:
     strength = float(np.clip((usual - 2) / (5 * _SCALE), 0, 1))
     half_width = 0.4 * (_SCALE if usual > 5 * _SCALE else 1)
     edges = np.rint(strength * np.array(_EDGE) + (1 - strength) * shades).astype(np.uint8)
-    canvas = _Canvas(size, np.concatenate([shades, edges, np.array([_FEW, _MANY], np.uint8)]))
+    radius = float(np.clip(0.3 * usual, 1.6 * _SCALE, 3.5 * _SCALE))
+    colours = np.concatenate([shades, edges, np.array([_FEW, _MANY], np.uint8)])
+    canvas = _Canvas(size, colours, (placed[:, 2].min(), placed[:, 2].max() + 2 * radius))
     for some, u, v in _grids(sides):
         weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=1)
         dots = np.matmul(weights, placed[quads[some]])
         from_edge = np.minimum([u, v], [1 - u, 1 - v]).T * sides.widths[some, None]
         is_edge = from_edge.min(axis=2) < half_width
         canvas.put(dots.reshape(-1, 3), (some[:, None] + len(quads) * is_edge).reshape(-1))
-    radius = float(np.clip(0.3 * usual, 1.6 * _SCALE, 3.5 * _SCALE))
     vertex, is_many = _irregular(quads, facing, len(vertices))
     reach = np.arange(-int(radius), int(radius) + 1)
     disc = np.stack(np.meshgrid(reach, reach, 2 * radius), axis=-1).reshape(-1, 3)
@@ -119,27 +121,24 @@ def _shades(corners: FloatArray) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.
 
 
 class _Canvas:
-    """Pixels, and how near the eye what is seen in each is."""
+    """Pixels: what is nearest in each, and its colour, as one number that is the greater the nearer it is."""
 
-    def __init__(self, size: npt.NDArray[np.int64], colours: Pixels) -> None:
+    def __init__(self, size: npt.NDArray[np.int64], colours: Pixels, nearness: tuple[float, float]) -> None:
+        """Nothing yet; `nearness` says between what values that of all dots is."""
         self._size, self._colours = size, np.concatenate([colours, np.array([_BACKGROUND], np.uint8)])
-        self._nearest = np.full(int(size.prod()), -np.inf)
-        self._colour_of = np.full(len(self._nearest), len(colours))
-        self._latest = np.zeros(len(self._nearest), np.int64)
+        self._seen = np.full(int(size.prod()), -1, np.int64)
+        self._least, self._unit = nearness[0], _LEVELS / max(nearness[1] - nearness[0], 1e-30)
 
     def put(self, dots: FloatArray, colours: npt.NDArray[np.int64]) -> None:
         """Dots (n, 3), column, row and nearness, with the numbers of their colours; each is seen where nothing nearer is."""
-        order = np.argsort(dots[:, 2], kind="stable")
-        column, row = np.clip(dots[order, :2].astype(np.int64), 0, self._size - 1).T
-        pixel, rank = row * self._size[0] + column, np.arange(len(order))
-        self._latest[pixel] = rank  # of several in one pixel the last stays
-        is_seen = (self._latest[pixel] == rank) & (dots[order, 2] > self._nearest[pixel])
-        self._nearest[pixel[is_seen]] = dots[order[is_seen], 2]
-        self._colour_of[pixel[is_seen]] = colours[order[is_seen]]
+        column, row = np.clip(dots[:, :2].astype(np.int64), 0, self._size - 1).T
+        level = ((dots[:, 2] - self._least) * self._unit).astype(np.int64)
+        np.maximum.at(self._seen, row * self._size[0] + column, (level << 32) + colours)
 
     def pixels(self) -> Pixels:
         """(height, width, 3) uint8."""
-        return self._colours[self._colour_of].reshape(int(self._size[1]), int(self._size[0]), 3)
+        colour = np.where(self._seen < 0, len(self._colours) - 1, self._seen & 0xFFFFFFFF)
+        return self._colours[colour].reshape(int(self._size[1]), int(self._size[0]), 3)
 
 
 class _Sides(NamedTuple):
