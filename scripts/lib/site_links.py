@@ -1,4 +1,4 @@
-"""A hook of MkDocs: what the pages of docs/ link to elsewhere in the repository becomes part of the site.
+"""A hook of MkDocs: what pages link to elsewhere in the repository becomes part of the site, and docstrings get links.
 
 In the repository links as ``../CONTRIBUTING.md`` lead to a file. The site has such files below ``project/``: Markdown as pages, all
 others as they are; a link to a folder leads to its README. Links to other folders and to hidden files become plain text. A link to
@@ -16,6 +16,7 @@ from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[2]
 OUTSIDE = "project"
+ROLE = re.compile(r":(?:func|class|meth|mod):<code>([^<]*)</code>")
 LINK = re.compile(r"\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -47,6 +48,17 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
         return f"[{link[1]}]({posixpath.relpath(_site_path(target), posixpath.dirname(own))}{link[3] or ''})"
 
     return LINK.sub(moved, markdown)
+
+
+def on_page_content(html: str, **_: Any) -> str:
+    """Roles of docstrings, as ``:func:`remesh```, become links to what the page has, else plain code."""
+
+    def shown(role: re.Match[str]) -> str:
+        name = role[1].rpartition(".")[2]
+        code = f"<code>{name}</code>"
+        return f'<a href="#hybrid_quad.{name}">{code}</a>' if f'id="hybrid_quad.{name}"' in html else code
+
+    return ROLE.sub(shown, html)
 
 
 def _section(nav: list[Any], name: str) -> list[str]:

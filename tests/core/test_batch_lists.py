@@ -198,41 +198,6 @@ def test_a_lock_is_one_processes(tmp_path):
         assert third is not None
 
 
-def test_a_picture_of_a_cube(tmp_path):
-    image_module = pytest.importorskip("PIL.Image")
-    import numpy as np
-
-    from hybrid_quad.core import picture
-
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]], np.int32)
-    picture.write_picture(tmp_path / "p.png", corners, quads)
-    pixels = np.asarray(image_module.open(tmp_path / "p.png").convert("RGB")).astype(int)
-    assert pixels.shape == (picture.HEIGHT, picture.WIDTH, 3)
-    assert (pixels[0] == 255).all() and (pixels[:, 0] == 255).all()  # nothing at the rim
-    orange = np.abs(pixels - picture._FEW).sum(axis=2) < 60
-    assert orange.sum() > 50  # its corners, where three quads meet
-    assert ((pixels != 255).any(axis=2)).mean() > 0.2
-
-
-def test_many_quads_are_drawn_without_gaps():
-    pytest.importorskip("PIL")
-    import numpy as np
-
-    from hybrid_quad.core import picture
-
-    count = 220  # more squares than are drawn one by one
-    u, v = np.meshgrid(np.linspace(0, 1, count + 1), np.linspace(0, 1, count + 1), indexing="ij")
-    vertices = np.stack([u.ravel(), 0 * u.ravel(), v.ravel()], axis=1)
-    first = (np.arange(count)[:, None] * (count + 1) + np.arange(count)).ravel()
-    quads = np.stack([first, first + count + 1, first + count + 2, first + 1], axis=1).astype(np.int32)
-    assert len(quads) > picture._MOST_POLYGONS
-    pixels = np.asarray(picture.draw(vertices, quads))
-    filled = (pixels != 255).any(axis=2)
-    inside = [row[row.argmax() : len(row) - row[::-1].argmax()] for row in filled if row.any()]
-    assert min(row.mean() for row in inside) == 1
-
-
 def test_a_task_reads_its_lines_of_a_list_and_no_others(folder, plan, tmp_path):
     listed = tmp_path / "list.jsonl"
     assets = list_assets([str(folder)], {"quads": 300, "no_sharp": True}, plan, no_objects)

@@ -49,6 +49,7 @@ def test_a_mesh_goes_through_without_its_arrays(tmp_path):
     arrays = hybrid_quad.mesh_arrays(flat)
     assert hybrid_quad.check(flat) == hybrid_quad.check(*arrays) == []
     assert np.array_equal(hybrid_quad.repair(flat).triangles, hybrid_quad.repair(*arrays).triangles)
+    assert np.array_equal(hybrid_quad.preview(flat).points, hybrid_quad.preview(*arrays).points)
     assert np.array_equal(hybrid_quad.subdivide(flat).vertices, hybrid_quad.subdivide(*arrays).vertices)
 
 

@@ -54,6 +54,12 @@ def test_every_page_has_a_place_in_the_site():
     assert not missing
 
 
+def test_every_public_name_has_its_docstring_in_the_reference():
+    shown = re.findall(r"^::: hybrid_quad\.(\w+)$", (ROOT / "docs" / "python.md").read_text(), re.MULTILINE)
+    assert sorted(shown) == sorted(hybrid_quad.__all__)
+    assert all(getattr(hybrid_quad, name).__doc__ for name in shown)
+
+
 def test_links_lead_to_files():
     """Also those that the site does not have: of README.md and CONTRIBUTING.md."""
     pages = [ROOT / page for page in (*PAGES, "CONTRIBUTING.md", "CHANGELOG.md")]
@@ -148,7 +154,10 @@ def check_blender(words: list[str], block: Block) -> None:
     assert script.is_file(), block.place
     sources = [script]
     if script.name == "batch.py":
-        sources = [ROOT / "addon" / "hybrid_quad" / "blender" / name for name in ("command.py", "part_arguments.py")]
+        sources = [
+            ROOT / "addon" / "hybrid_quad" / "blender" / name
+            for name in ("command.py", "case_command.py", "part_arguments.py")
+        ]
     text = "".join(source.read_text() for source in sources)
     for flag in flags(words[words.index("--") + 1 :] if "--" in words else []):
         assert f'"{flag}"' in text, f"{block.place}: {flag}"

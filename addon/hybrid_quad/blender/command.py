@@ -23,7 +23,7 @@ from ..core.mesh_io import MeshFileError, replacing
 from ..core.options import AXES, RemeshOptions
 from ..core.parent_process import end_with_stdin
 from ..core.strokes import KINDS
-from . import part_arguments
+from . import case_command, part_arguments
 from .edge_marks import SOURCES
 from .operators import message_of
 from .remesh_task import RemeshTask, prepare_task
@@ -52,7 +52,7 @@ def main(arguments: Sequence[str]) -> int:
     """Remeshes one object of the open file, saves the file under another name, and returns the exit status.
 
     Nothing is written unless the run succeeds, except a report that says why it did not. Where the first word is ``batch``
-    or ``case``, the rest is that of the command ``hybrid-quad batch`` or ``case``.
+    or ``case``, the rest is that of the command ``hybrid-quad batch`` or ``case``; ``case --object`` packs an object of the file.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str]) -> int:
         program = bpy.app.binary_path  # none where Blender is a Python module
         return package_main([*arguments, *(["--blender", program] if program and "--blender" not in arguments else [])])
     if arguments[:1] == ["case"]:
-        return package_main(arguments)
+        return _pack_object(arguments[1:]) if case_command.is_of_object(arguments) else package_main(arguments)
     try:
         options = _parser().parse_args(list(arguments))
     except SystemExit as stop:  # argparse has printed usage or help
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str]) -> int:
             result = task.solve(progress=_printer(options.quiet))
             target = place_result(bpy.context, obj, task, result)
             record = {**result.report, "object": target.name, "source_object": obj.name}
-            if options.picture and picture.can_draw():
+            if options.picture:
                 picture.write_picture(options.picture, result.vertices, result.quads)
             _write_report(options.report, record)
             if options.only_result:
@@ -100,6 +100,14 @@ def main(arguments: Sequence[str]) -> int:
     if not options.quiet:
         print(_summary(options, record), flush=True)
     return exit_codes.OK
+
+
+def _pack_object(arguments: Sequence[str]) -> int:
+    try:
+        return case_command.main(arguments, _find_object)
+    except (UsageError, InputError) as error:
+        print(f"hybrid_quad: {error}", file=sys.stderr)
+        return exit_codes.WRONG_USAGE
 
 
 class UsageError(Exception):
@@ -206,11 +214,7 @@ def _parser() -> argparse.ArgumentParser:
         help="stop with status 4 where Blender takes more memory",
     )
     parser.add_argument("--report", metavar="R.json", help="write counts, quality, timings and warnings there")
-    parser.add_argument(
-        "--picture",
-        metavar="FILE.png",
-        help="draw a small picture of the result there, if Blender has Pillow",
-    )
+    parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     parser.add_argument(
         "--end-with-stdin",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .edge_marks import BORDERS, SHARP, SOURCES
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, settings_layout
 
 
 class VIEW3D_PT_hybrid_quad_features(HybridQuadPanel, bpy.types.Panel):
@@ -15,9 +15,7 @@ class VIEW3D_PT_hybrid_quad_features(HybridQuadPanel, bpy.types.Panel):
     bl_parent_id = "VIEW3D_PT_hybrid_quad"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         row = layout.row(heading="By Angle", align=True)
         row.prop(settings, "use_sharp_angle", text="")
@@ -35,9 +33,7 @@ class VIEW3D_PT_hybrid_quad_feature_sources(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         marks = layout.column(heading="Marked")
         borders = layout.column(heading="Borders of")

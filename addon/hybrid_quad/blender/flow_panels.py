@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .guide_lines import LINE_TYPES
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, settings_layout
 
 
 class VIEW3D_PT_hybrid_quad_guides(HybridQuadPanel, bpy.types.Panel):
@@ -16,9 +16,7 @@ class VIEW3D_PT_hybrid_quad_guides(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         column = layout.column(heading="Painted")
         column.prop(settings, "use_guide_attribute", text="Direction")
@@ -55,9 +53,7 @@ class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         column = layout.column()
         adaptivity = column.column()
@@ -76,9 +72,7 @@ class VIEW3D_PT_hybrid_quad_symmetry(HybridQuadPanel, bpy.types.Panel):
     bl_parent_id = "VIEW3D_PT_hybrid_quad"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         row = layout.row(heading="Mirror", align=True)
         axes = row.row(align=True)

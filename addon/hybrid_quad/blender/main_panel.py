@@ -9,7 +9,7 @@ import bpy
 from ..core import native
 from . import background_run
 from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, settings_layout
 from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
 from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
@@ -29,9 +29,7 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
             VIEW3D_PT_hybrid_quad_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         run = background_run.current()
         if run is not None:
             _draw_run(layout, context, run)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, settings_layout
 from .part_pick import OBJECT_OT_hybrid_quad_pick_face_set
 from .part_source import knows_face_sets
 
@@ -17,9 +17,7 @@ class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad.part
         column = layout.column()
         column.prop(settings, "region", text="Faces")

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, draw_figure
 from .result_mesh import read_report
 
 
@@ -27,11 +27,7 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
             return
         rows = self.layout.column(align=True)
         for name, value in _rows_of(report):
-            row = rows.row()
-            row.label(text=name)
-            right = row.row()
-            right.alignment = "RIGHT"
-            right.label(text=value)
+            draw_figure(rows, name, value)
         for defect in report.get("defects", ()):
             self.layout.label(
                 text=f"Repaired: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, settings_layout
 from .transfer.kinds import KINDS
 
 
@@ -18,9 +18,7 @@ class VIEW3D_PT_hybrid_quad_transfer(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         settings = context.object.hybrid_quad
         columns: dict[str, Any] = {}
         for kind in KINDS:
@@ -38,9 +36,7 @@ class VIEW3D_PT_hybrid_quad_limits(HybridQuadPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         column = layout.column()
         column.prop(context.object.hybrid_quad, "time_limit")
         column.prop(context.object.hybrid_quad, "memory_limit")

@@ -5,29 +5,23 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from types import TracebackType
-from typing import TYPE_CHECKING
 
 from ..batch_jobs.asset_status import OK, AssetStatus
 from .messages import say
-
-if TYPE_CHECKING:
-    from tqdm import tqdm
+from .terminal_bar import terminal_bar
 
 
 class BatchProgress:
     """Receives the status of each asset while it is used as a context.
 
-    A terminal shows a bar, and above it a line for every asset that failed; a log file gets a line for every asset.
+    A terminal shows a bar, and above it a line for every asset that failed; a log file, and Blender's terminal, get a line for
+    every asset, which says how many are done.
     """
 
     def __init__(self, total: int, quiet: bool) -> None:
         self._total, self._quiet = total, quiet
         self._counts: Counter[str] = Counter()
-        self._bar: tqdm[None] | None = None
-        if not quiet and sys.stderr.isatty():
-            from tqdm import tqdm  # takes longer to load than all else here
-
-            self._bar = tqdm(total=total, file=sys.stderr, unit="asset", dynamic_ncols=True)
+        self._bar = None if quiet else terminal_bar(total=total, unit="asset", dynamic_ncols=True)
 
     def __enter__(self) -> BatchProgress:
         return self

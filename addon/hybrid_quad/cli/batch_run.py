@@ -19,7 +19,7 @@ from ..batch_jobs.job_file import JobFileError, write_job_file
 from ..batch_jobs.job_list import is_list_of_lines, list_assets, list_lines
 from ..batch_jobs.run_asset import BatchFault
 from ..batch_jobs.settings import KINDS, canonical
-from ..core import native, picture
+from ..core import native
 from ..core.options import usable_threads
 from . import exit_codes, remesh_command
 from .batch_progress import BatchProgress
@@ -64,13 +64,10 @@ def _plan(arguments: argparse.Namespace) -> BatchPlan:
         raise BatchFault(f"{output}: {error.strerror}") from error
     if not os.access(output, os.W_OK):
         raise BatchFault(f"{output}: cannot be written to")
-    can_draw = picture.can_draw()
-    if not (can_draw or arguments.no_pictures or arguments.quiet):
-        say("pictures of results are left out: they need Pillow (pip install 'hybrid-quad[pictures]')")
     return BatchPlan(
         output=str(output),
         result_format=arguments.format,
-        pictures=can_draw and not arguments.no_pictures,
+        pictures=not arguments.no_pictures,
         blender=arguments.blender,
         retry_failed=arguments.retry_failed,
         time_limit=_HOUR,

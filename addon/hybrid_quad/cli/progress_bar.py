@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from types import TracebackType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from tqdm import tqdm
 
 from .messages import say
+from .terminal_bar import terminal_bar
 
 
 class ProgressBar:
@@ -21,13 +17,8 @@ class ProgressBar:
     def __init__(self, quiet: bool) -> None:
         self._quiet = quiet
         self._stage = ""
-        self._bar: tqdm[None] | None = None
-        if not quiet and sys.stderr.isatty():
-            from tqdm import tqdm  # takes longer to load than all else here
-
-            self._bar = tqdm(
-                total=100, file=sys.stderr, leave=False, bar_format="{desc:<28} {percentage:3.0f}% |{bar}| {elapsed}"
-            )
+        form = "{desc:<28} {percentage:3.0f}% |{bar}| {elapsed}"
+        self._bar = None if quiet else terminal_bar(total=100, leave=False, bar_format=form)
 
     def __enter__(self) -> ProgressBar:
         return self

@@ -38,7 +38,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument("output", metavar="OUT", help="result: .obj, .ply or .off")
     add_settings(parser)
     parser.add_argument("--report", metavar="FILE.json", help="write counts, quality, timings and warnings there")
-    parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there (needs Pillow)")
+    parser.add_argument("--picture", metavar="FILE.png", help="draw a small picture of the result there")
     parser.add_argument("--dump-stages", metavar="DIR", help="write a .vtu file of every stage there")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     parser.add_argument(
@@ -179,8 +179,6 @@ def run(arguments: argparse.Namespace) -> int:
     mesh_io.check_writable(arguments.output)
     for path in filter(None, (arguments.report, arguments.picture)):
         mesh_io.check_place(path)
-    if arguments.picture and not picture.can_draw():
-        raise UsageProblem("--picture needs Pillow: pip install 'hybrid-quad[pictures]'")
     try:
         result, mesh = _remesh(arguments, options, started)
         if arguments.picture:

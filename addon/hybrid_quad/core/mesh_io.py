@@ -1,8 +1,8 @@
 """Meshes from and to files: .obj, .ply, .stl and .off in; .obj, .ply and .off out.
 
-PLY and STL are read by meshio. OBJ and OFF are read here: meshio takes only triangles from OFF, and in OBJ it mistakes
-relative indices and refuses files with more texture coordinates or normals than vertices. Vertices are never merged or
-reordered, except those of STL, which has none of its own.
+Not by meshio, which takes only triangles from OFF, mistakes relative indices of OBJ and refuses files with more texture coordinates
+or normals than vertices, and which Blender's Python does not have. Vertices are never merged or reordered, except those of STL, which
+has none of its own.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
 from .mesh_arrays import FloatArray, IntArray, Polygons, as_polygons
+from .ply_file import read_ply
+from .stl_file import read_stl
 
 READABLE = (".obj", ".ply", ".stl", ".off")
 WRITABLE = (".obj", ".ply", ".off")
@@ -47,9 +49,7 @@ def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
     MeshFileError
     """
     path = Path(path)
-    reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_with_meshio, ".stl": _read_with_meshio}.get(
-        path.suffix.lower()
-    )
+    reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_ply, ".stl": _read_stl}.get(path.suffix.lower())
     if reader is None:
         raise MeshFileError(f"{path}: cannot read '{path.suffix}' files, only {', '.join(READABLE)}")
     try:
@@ -371,35 +371,14 @@ def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
     return _points_of_tokens(positions), Polygons(sizes, _as_int32(corners))
 
 
-def _read_with_meshio(path: Path) -> tuple[FloatArray, Polygons]:
-    import meshio
-
-    module = meshio.ply if path.suffix.lower() == ".ply" else meshio.stl
-    if module is meshio.ply:
-        _require_whole_header(path)
-    try:
-        mesh: Any = module.read(str(path))
-    except OSError:
-        raise
-    except Exception as error:  # meshio lets all kinds of exceptions through where a file is damaged
-        reason = str(error) or type(error).__name__
-        raise MeshFileError(
-            f"{path}: not a {path.suffix.lower()[1:].upper()} file that can be read ({reason})"
-        ) from error
-    parts = [as_polygons(np.asarray(block.data)) for block in mesh.cells if block.dim == 2 or block.type == "polygon"]
-    points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
-    if not parts:
-        return points, as_polygons([])
-    return points, Polygons(
-        np.concatenate([part.sizes for part in parts]), np.concatenate([part.vertices for part in parts])
-    )
+def _read_ply(path: Path) -> tuple[FloatArray, Polygons]:
+    vertices, sizes, corners = read_ply(path.read_bytes())
+    return vertices, Polygons(_as_int32(sizes.tolist()), _as_int32(corners.tolist()))
 
 
-def _require_whole_header(path: Path) -> None:
-    """Raises ValueError where a PLY file ends in its header, whose end meshio would look for without end."""
-    with path.open("rb") as file:
-        if not any(line.strip() == b"end_header" for line in file):
-            raise ValueError("no PLY file, or one that ends in its header")
+def _read_stl(path: Path) -> tuple[FloatArray, Polygons]:
+    vertices, triangles = read_stl(path.read_bytes())
+    return vertices, as_polygons(triangles)
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

@@ -40,7 +40,7 @@ class RemeshOptions:
         Largest distance between quads and the surface that is aimed at, in the units of the vertices. The curvature then
         says how long edges are, not `quads`; `edge_length` is the longest, an eighth of the bounding box's diagonal
         where it is not given, and 64 times the shortest. In place of `adaptivity`.
-    narrow_quads : {1, 2}
+    narrow_quads : int, 1 or 2
         Rows of quads that strips between two features get at least.
     anisotropy : float
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.

@@ -1,21 +1,20 @@
 """A small picture of a quad mesh, drawn without a window or 3D hardware: edges, and irregular vertices in colour.
 
-Needs Pillow (the package's extra ``pictures``).
+Quads are drawn as dots closer than pixels, the nearest of which is seen.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .mesh_arrays import FloatArray, IntArray
 from .mesh_io import replacing
-
-if TYPE_CHECKING:
-    from PIL import Image
+from .png_file import Pixels, png_of
 
 WIDTH, HEIGHT = 360, 270
 _SCALE = 2  # drawn larger by this and then reduced, for smooth lines
@@ -25,16 +24,10 @@ _LIGHT = np.array([0.1, -0.75, 0.65])
 _BACKGROUND, _EDGE = (255, 255, 255), (38, 50, 66)
 _FACE = np.array([176, 200, 226], float)
 _FEW, _MANY = (240, 120, 0), (20, 70, 230)  # three quads or fewer, five or more
-_MOST_POLYGONS = 40_000  # of more quads an edge would be seen nowhere: they are drawn as dots
-_MOST_DOTS = 12_000_000
 _PALETTE = 64
-
-
-def can_draw() -> bool:
-    """Whether Pillow is there."""
-    from importlib.util import find_spec
-
-    return find_spec("PIL") is not None
+_DOTS_IN_A_PIXEL = 1.2  # along each side of a quad
+_DOTS_AT_ONCE = 1_000_000
+_LEVELS = 1 << 28  # of nearness
 
 
 def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> None:
@@ -48,32 +41,61 @@ def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> No
 
     Raises
     ------
-    ImportError
-        Without Pillow.
     MeshFileError
         If the file cannot be written.
     """
-    from PIL import Image
-
-    image = draw(vertices, quads).resize((WIDTH, HEIGHT), Image.Resampling.LANCZOS)
+    large = draw(vertices, quads).reshape(HEIGHT, _SCALE, WIDTH, _SCALE, 3)
+    pixels = np.rint(large.mean(axis=(1, 3))).astype(np.uint8)
     # Few colours, so that a page of many pictures stays small.
-    image = image.quantize(_PALETTE, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     with replacing(path) as file:
-        image.save(file, format="PNG", optimize=True)
+        file.write(png_of(pixels, _PALETTE, kept=(_BACKGROUND, _FEW, _MANY)))
 
 
-def draw(vertices: FloatArray, quads: IntArray) -> Image.Image:
-    """The picture, `_SCALE` times as large as it is written: painted from back to front."""
+def draw(vertices: FloatArray, quads: IntArray) -> Pixels:
+    """The picture's pixels from the top, `_SCALE` times as many along each side as are written: (height, width, 3) uint8."""
     size = np.array([WIDTH, HEIGHT]) * _SCALE
-    screen, depth = _projected(vertices, size)
+    placed = _projected(vertices, size)
     shades, facing = _shades(vertices[quads])
-    if len(quads) > _MOST_POLYGONS:
-        return _dots(screen, depth, quads, shades, size)
-    return _painted(screen, depth, quads, shades, facing, size)
+    sides = _sides(placed[quads, :2])
+    usual = float(np.median(sides.lengths)) if len(quads) else 0.0
+    # Edges thin out where quads are small, so that they do not hide the surface.
+    strength = float(np.clip((usual - 2) / (5 * _SCALE), 0, 1))
+    half_width = 0.4 * (_SCALE if usual > 5 * _SCALE else 1)
+    edges = np.rint(strength * np.array(_EDGE) + (1 - strength) * shades).astype(np.uint8)
+    radius = float(np.clip(0.3 * usual, 1.6 * _SCALE, 3.5 * _SCALE))
+    colours = np.concatenate([shades, edges, np.array([_FEW, _MANY], np.uint8)])
+    canvas = _Canvas(size, colours, (placed[:, 2].min(), placed[:, 2].max() + 2 * radius))
+    for some, u, v in _grids(sides):
+        weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=1)
+        dots = np.matmul(weights, placed[quads[some]])
+        from_edge = np.minimum([u, v], [1 - u, 1 - v]).T * sides.widths[some, None]
+        is_edge = from_edge.min(axis=2) < half_width
+        canvas.put(dots.reshape(-1, 3), (some[:, None] + len(quads) * is_edge).reshape(-1))
+    vertex, is_many = _irregular(quads, facing, len(vertices))
+    reach = np.arange(-int(radius), int(radius) + 1)
+    disc = np.stack(np.meshgrid(reach, reach, 2 * radius), axis=-1).reshape(-1, 3)
+    disc = disc[(disc[:, :2] ** 2).sum(axis=1) <= radius**2]
+    # In front of the surface that they are on, and behind what is nearer than that.
+    canvas.put((placed[vertex, None] + disc).reshape(-1, 3), np.repeat(2 * len(quads) + is_many, len(disc)))
+    return canvas.pixels()
 
 
-def _projected(vertices: FloatArray, size: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Places in the picture (n, 2), and how near the eye they are (n,)."""
+def _irregular(
+    quads: IntArray, facing: npt.NDArray[np.bool_], vertex_count: int
+) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
+    """Irregular vertices off the boundary, the front of a quad around which is seen, and whether five or more meet there."""
+    valence = np.bincount(quads.reshape(-1), minlength=vertex_count)
+    inner, front = np.ones(vertex_count, bool), np.zeros(vertex_count, bool)
+    sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    inner[edges[uses == 1].reshape(-1)] = False
+    front[quads[facing].reshape(-1)] = True
+    vertex = np.flatnonzero((valence != 4) & (valence > 0) & inner & front)
+    return vertex, valence[vertex] > 4
+
+
+def _projected(vertices: FloatArray, size: npt.NDArray[Any]) -> FloatArray:
+    """Columns and rows in the picture, and how near the eye they are, in pixels: (n, 3)."""
     towards = _VIEW / np.linalg.norm(_VIEW)
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
@@ -82,7 +104,7 @@ def _projected(vertices: FloatArray, size: npt.NDArray[Any]) -> tuple[FloatArray
     room = size * (1 - 2 * _MARGIN)
     scale = float((room / np.maximum(high - low, 1e-30)).min())
     flat = (flat - 0.5 * (low + high)) * scale * np.array([1.0, -1.0]) + 0.5 * size
-    return flat, vertices @ towards
+    return np.column_stack([flat, scale * (vertices @ towards)])
 
 
 def _shades(corners: FloatArray) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.bool_]]:
@@ -98,79 +120,49 @@ def _shades(corners: FloatArray) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.
     return colours, facing
 
 
-def _painted(
-    screen: FloatArray,
-    depth: FloatArray,
-    quads: IntArray,
-    shades: npt.NDArray[np.uint8],
-    facing: npt.NDArray[np.bool_],
-    size: npt.NDArray[Any],
-) -> Image.Image:
-    from PIL import Image, ImageDraw
+class _Canvas:
+    """Pixels: what is nearest in each, and its colour, as one number that is the greater the nearer it is."""
 
-    image = Image.new("RGB", (int(size[0]), int(size[1])), _BACKGROUND)
-    painter = ImageDraw.Draw(image)
-    order = np.argsort(depth[quads].mean(axis=1), kind="stable")
-    dots = _irregular_after(quads, order, facing, len(screen))
-    sides = np.linalg.norm(screen[quads] - screen[np.roll(quads, -1, axis=1)], axis=2)
-    usual = float(np.median(sides))
-    # Edges thin out where quads are small, so that they do not hide the surface.
-    strength = float(np.clip(usual / (6 * _SCALE), 0.25, 1))
-    width = _SCALE if usual > 5 * _SCALE else 1
-    radius = float(np.clip(0.3 * usual, 1.6 * _SCALE, 3.5 * _SCALE))
-    for quad in order.tolist():
-        points = [tuple(point) for point in screen[quads[quad]].tolist()]
-        fill = tuple(shades[quad].tolist())
-        edge = tuple(int(strength * e + (1 - strength) * f) for e, f in zip(_EDGE, fill, strict=True))
-        painter.polygon(points, fill=fill)
-        painter.line([*points, points[0]], fill=edge, width=width)
-        for vertex, colour in dots.get(quad, ()):
-            x, y = screen[vertex].tolist()
-            painter.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
-    return image
+    def __init__(self, size: npt.NDArray[np.int64], colours: Pixels, nearness: tuple[float, float]) -> None:
+        """Nothing yet; `nearness` says between what values that of all dots is."""
+        self._size, self._colours = size, np.concatenate([colours, np.array([_BACKGROUND], np.uint8)])
+        self._seen = np.full(int(size.prod()), -1, np.int64)
+        self._least, self._unit = nearness[0], _LEVELS / max(nearness[1] - nearness[0], 1e-30)
+
+    def put(self, dots: FloatArray, colours: npt.NDArray[np.int64]) -> None:
+        """Dots (n, 3), column, row and nearness, with the numbers of their colours; each is seen where nothing nearer is."""
+        column, row = np.clip(dots[:, :2].astype(np.int64), 0, self._size - 1).T
+        level = ((dots[:, 2] - self._least) * self._unit).astype(np.int64)
+        np.maximum.at(self._seen, row * self._size[0] + column, (level << 32) + colours)
+
+    def pixels(self) -> Pixels:
+        """(height, width, 3) uint8."""
+        colour = np.where(self._seen < 0, len(self._colours) - 1, self._seen & 0xFFFFFFFF)
+        return self._colours[colour].reshape(int(self._size[1]), int(self._size[0]), 3)
 
 
-def _irregular_after(
-    quads: IntArray, order: npt.NDArray[np.intp], facing: npt.NDArray[np.bool_], vertex_count: int
-) -> dict[int, list[tuple[int, tuple[int, int, int]]]]:
-    """Irregular vertices and their colours, by the quad after which they are drawn: the last around them."""
-    valence = np.bincount(quads.reshape(-1), minlength=vertex_count)
-    inner = np.ones(vertex_count, bool)
-    sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    edges, uses = np.unique(sides, axis=0, return_counts=True)
-    inner[edges[uses == 1].reshape(-1)] = False
-    seen = np.zeros(vertex_count, bool)
-    seen[quads[facing].reshape(-1)] = True
-    rank = np.empty(len(quads), np.int64)
-    rank[order] = np.arange(len(quads))
-    last = np.full(vertex_count, -1)
-    np.maximum.at(last, quads.reshape(-1), np.repeat(rank, 4))
-    found: dict[int, list[tuple[int, tuple[int, int, int]]]] = {}
-    for vertex in np.flatnonzero((valence != 4) & (valence > 0) & inner & seen).tolist():
-        colour = _FEW if valence[vertex] < 4 else _MANY
-        found.setdefault(int(order[last[vertex]]), []).append((vertex, colour))
-    return found
+class _Sides(NamedTuple):
+    """Of quads in the picture, in pixels: (m, 2) lengths along u and v, and (m, 2) widths across, of the same area."""
+
+    lengths: FloatArray
+    widths: FloatArray
 
 
-def _dots(
-    screen: FloatArray, depth: FloatArray, quads: IntArray, shades: npt.NDArray[np.uint8], size: npt.NDArray[Any]
-) -> Image.Image:
-    """Quads as grids of dots closer than pixels, the nearest of which is seen."""
-    from PIL import Image
+def _sides(corners: FloatArray) -> _Sides:
+    around = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    lengths = np.maximum(around[:, :2], around[:, 2:])
+    first, second = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    area = 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    return _Sides(lengths, area[:, None] / np.maximum(lengths[:, ::-1], 1e-9))
 
-    sides = np.linalg.norm(screen[quads] - screen[np.roll(quads, -1, axis=1)], axis=2).max(axis=1)
-    steps = int(np.clip(np.ceil(1.5 * np.percentile(sides, 99)), 1, max(1.0, (_MOST_DOTS / len(quads)) ** 0.5)))
-    nearest = np.full(int(size[0] * size[1]), -np.inf)
-    seen = np.full(len(nearest), -1)
-    for u in (np.arange(steps) + 0.5) / steps:
-        for v in (np.arange(steps) + 0.5) / steps:
-            weights = np.array([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
-            place = np.einsum("qci,c->qi", screen[quads], weights).astype(np.int64)
-            near = depth[quads] @ weights
-            pixel = np.clip(place[:, 1], 0, size[1] - 1) * size[0] + np.clip(place[:, 0], 0, size[0] - 1)
-            np.maximum.at(nearest, pixel, near)
-            foremost = near >= nearest[pixel]
-            seen[pixel[foremost]] = np.flatnonzero(foremost)
-    pixels = np.full((len(nearest), 3), 255, np.uint8)
-    pixels[seen >= 0] = shades[seen[seen >= 0]]
-    return Image.fromarray(pixels.reshape(int(size[1]), int(size[0]), 3))
+
+def _grids(sides: _Sides) -> Iterator[tuple[npt.NDArray[np.intp], FloatArray, FloatArray]]:
+    """Quads of about the same size, some at a time, with the u and v of dots on each."""
+    level = np.ceil(2 * np.log2(np.maximum(_DOTS_IN_A_PIXEL * sides.lengths, 1)))
+    steps = np.ceil(2 ** (0.5 * level)).astype(np.int64)
+    kinds, kind_of = np.unique(steps, axis=0, return_inverse=True)
+    for number, (along, across) in enumerate(kinds.tolist()):
+        u, v = np.meshgrid((np.arange(along) + 0.5) / along, (np.arange(across) + 0.5) / across)
+        chosen = np.flatnonzero(kind_of.reshape(-1) == number)
+        for some in np.array_split(chosen, 1 + len(chosen) * u.size // _DOTS_AT_ONCE):
+            yield some, u.reshape(-1), v.reshape(-1)

@@ -13,6 +13,7 @@ from . import native
 from .check import Defect
 from .curve_counts import CurveCount
 from .mesh_arrays import FacesLike, FloatArray, IntArray
+from .mesh_objects import MeshLike, vertices_and_faces
 from .options import RemeshOptions
 from .remesh import CancelCallback, ProgressCallback, native_arguments
 from .strokes import Stroke
@@ -79,8 +80,8 @@ class Preview:
 
 
 def preview(
-    vertices: npt.ArrayLike,
-    faces: FacesLike,
+    vertices: npt.ArrayLike | MeshLike,
+    faces: FacesLike | None = None,
     options: RemeshOptions | None = None,
     *,
     with_quads: bool = False,
@@ -98,8 +99,8 @@ def preview(
 
     Parameters
     ----------
-    vertices : (n, 3) float
-        Positions.
+    vertices : (n, 3) float, or a mesh
+        Positions; without `faces`, a mesh of trimesh, meshio or alike, see :func:`mesh_arrays`.
     faces : (m, k) int, or a sequence of sequences of int
         0-based vertices of each polygon.
     options : RemeshOptions, optional
@@ -119,8 +120,7 @@ def preview(
         As :func:`hybrid_quad.remesh` does.
     """
     asked, center = native_arguments(
-        vertices,
-        faces,
+        *vertices_and_faces(vertices, faces),
         RemeshOptions() if options is None else options,
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,

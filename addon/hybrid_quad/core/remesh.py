@@ -168,7 +168,7 @@ def remesh(
     chord_error : float, optional
         Instead of `quads` and `adaptivity`: the largest distance between quads and the surface that is aimed at, in the
         units of `vertices`. `edge_length` then bounds the edges; without one, an eighth of the diagonal does.
-    narrow_quads : {1, 2}
+    narrow_quads : int, 1 or 2
         Rows of quads that strips between two features get at least, unless two were slivers.
     anisotropy : float
         The most, 1 to 10, by which quads are stretched along the direction in which the surface bends less.

@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ..panel_base import HybridQuadPanel
 from . import stored_values
 from .brush_settings import KINDS
 from .density_operator import HYBRID_QUAD_OT_clear_painted, HYBRID_QUAD_OT_density_from_layer
@@ -13,19 +14,12 @@ from .painted_lines import PaintedLines
 from .stroke_view import TOOL, is_tool_active
 
 
-class VIEW3D_PT_hybrid_quad_painting(bpy.types.Panel):
+class VIEW3D_PT_hybrid_quad_painting(HybridQuadPanel, bpy.types.Panel):
     """Painted guides of the active object."""
 
     bl_label = "Painting"
     bl_parent_id = "VIEW3D_PT_hybrid_quad_guides"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Hybrid Quad"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.object is not None and context.object.type == "MESH"
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

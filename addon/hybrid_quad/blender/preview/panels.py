@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..panel_base import HybridQuadPanel
+from ..panel_base import HybridQuadPanel, draw_figure, settings_layout
 from . import sessions
 from .limit import OBJECT_OT_hybrid_quad_apply_subdivision
 from .session import Session
@@ -23,9 +23,7 @@ class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
         self.layout.prop(sessions.settings(), "show_field", text="")
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         asked = sessions.settings()
         layout.active = asked.show_field
         column = layout.column(heading="Show")
@@ -63,9 +61,7 @@ class VIEW3D_PT_hybrid_quad_limit(HybridQuadPanel, bpy.types.Panel):
         self.layout.prop(sessions.settings(), "show_limit", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = settings_layout(self)
         asked = sessions.settings()
         column = layout.column()
         column.active = asked.show_limit
@@ -101,11 +97,7 @@ def _draw_distance(layout: Any) -> None:
         ("Of the diagonal", f"{distance.percent:.3f} %"),
         ("Mean", f"{distance.mean:.4g}"),
     ):
-        row = rows.row()
-        row.label(text=name)
-        right = row.row()
-        right.alignment = "RIGHT"
-        right.label(text=value)
+        draw_figure(rows, name, value)
 
 
 CLASSES = (VIEW3D_PT_hybrid_quad_preview, VIEW3D_PT_hybrid_quad_limit)

@@ -1,0 +1,51 @@
+"""Triangles from STL files, text and binary."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .mesh_arrays import FloatArray
+
+_HEAD = 84  # bytes before the first triangle: any text, and how many there are
+_TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+    """Vertices (n, 3), those with the very same coordinates made one, and triangles (m, 3) of an STL file.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+
+    Raises
+    ------
+    ValueError
+        If it is no STL file, or ends within a triangle.
+    """
+    count = int(np.frombuffer(data, "<u4", 1, _HEAD - 4)[0]) if len(data) >= _HEAD else -1
+    end = _HEAD + count * _TRIANGLE.itemsize
+    # Binary files may begin with the word "solid" as texts do, and may have something behind their triangles.
+    is_text = data.lstrip()[:5].lower() == b"solid"
+    if count >= 0 and (end == len(data) or (end < len(data) and not is_text)):
+        points = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
+    elif is_text:
+        points = _points_of_text(data)
+    else:
+        raise ValueError("no STL file, or one that ends too early")
+    if len(points) % 3:
+        raise ValueError("the STL file ends within a triangle")
+    _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)  # as they come in the file
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return points[first[order]], rank[place.reshape(-1)].reshape(-1, 3)
+
+
+def _points_of_text(data: bytes) -> FloatArray:
+    words = data.lower().split()
+    begins = [place for place, word in enumerate(words) if word == b"vertex"]
+    if begins and begins[-1] + 3 >= len(words):
+        raise ValueError("the STL file ends within a triangle")
+    return np.array([[float(word) for word in words[at + 1 : at + 4]] for at in begins]).reshape(-1, 3)
