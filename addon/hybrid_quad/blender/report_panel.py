@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ..cli.messages import what_became_of
 from .panel_base import HybridQuadPanel
 from .result_mesh import read_report
 
@@ -33,8 +34,9 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
             right.alignment = "RIGHT"
             right.label(text=value)
         for defect in report.get("defects", ()):
+            became = what_became_of(defect).capitalize()
             self.layout.label(
-                text=f"Repaired: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
+                text=f"{became}: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
             )
         for warning in report.get("warnings", ()):
             self.layout.label(text=warning, icon="ERROR")
