@@ -116,7 +116,13 @@ TEST(MeshOddities, AreListedButLeaveTheMeshAsItIs) {
   EXPECT_TRUE(touching->repairable && touching->kept);
   EXPECT_EQ(touching->elements.size(), 18u);
   EXPECT_TRUE(std::any_of(touching->elements.begin(), touching->elements.end(), [&](int v) { return v >= first; }));
-  EXPECT_EQ(build_mesh(soup).mesh.vertex_count(), static_cast<int>(soup.positions.size()));
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_EQ(built.mesh.vertex_count(), static_cast<int>(soup.positions.size()));
+  // Of these a run speaks as well: a program that welds by place sees another surface.
+  const Defect* told = find_defect(built.defects, "touching_vertex");
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->elements, touching->elements);
+  EXPECT_EQ(find_defect(build_mesh(test::soup_of(test::box(2))).defects, "touching_vertex"), nullptr);
 }
 
 TEST(MeshOddities, ACornerFarFromAllOthersIsNamed) {

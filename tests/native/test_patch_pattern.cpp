@@ -53,6 +53,14 @@ TEST(PatchPattern, FourSidesThatFitAreAGrid) {
   expect_fills(patterns[0], {3, 5, 3, 5});
 }
 
+/// Counted by trying every cut of every length.
+TEST(PatchPattern, NoPatternIsLeftOut) {
+  constexpr std::size_t kAll = 100000;
+  EXPECT_EQ(patch_patterns({5, 7}, 20, kAll).size(), 16u);
+  EXPECT_EQ(patch_patterns({4, 6, 8, 8}, 20, kAll).size(), 72u);
+  EXPECT_EQ(patch_patterns({3, 4, 5, 3, 6, 5}, 20, kAll).size(), 10u);
+}
+
 TEST(PatchPattern, EveryPatternFillsItsDisk) {
   std::map<std::size_t, int> found;
   const auto all = [&](auto&& self, std::vector<int>& sides, std::size_t corners, int longest) -> void {

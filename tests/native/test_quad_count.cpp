@@ -52,6 +52,19 @@ TEST(QuadCount, TakesNoMoreThanAThird) {
   EXPECT_LE(c.quad_count(), 400);
 }
 
+TEST(QuadCount, NoRowIsLeftThatMayGo) {
+  QuadComplex c = quad_box(6, 5, 4);
+  const double before = c.quad_count();
+  fit_quad_count(c, 1, 0, {});
+  const double room = before / 3 - (before - c.quad_count());
+  const Polychords polychords = trace_polychords(c);
+  ASSERT_GT(polychords.length.size(), 0u);
+  for (std::size_t id = 0; id < polychords.length.size(); ++id) {
+    QuadComplex fewer = c;
+    if (polychords.length[id] <= room) EXPECT_FALSE(collapse_polychord(fewer, polychords, static_cast<int>(id))) << id;
+  }
+}
+
 TEST(QuadCount, BoxesKeepTheirCorners) {
   QuadComplex c = quad_box(8, 6, 5);
   const QuadComplex before = c;

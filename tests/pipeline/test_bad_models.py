@@ -56,8 +56,8 @@ def assert_valid_or_refused(vertices, faces):
         assert not refused
         assert len(result.quads)
         assert violations(result.vertices, result.quads) == []
-        repaired = {defect["code"] for defect in result.report["defects"]}
-        assert repaired == {defect.code for defect in defects if not defect.kept}
+        told = {defect["code"] for defect in result.report["defects"]}
+        assert told == {defect.code for defect in defects if not defect.kept or defect.code == "touching_vertex"}
 
 
 @pytest.mark.skipif(not bad_models(), reason="no collection of meshes beside the repository")

@@ -16,7 +16,7 @@ import bpy
 
 from ..cli import exit_codes
 from ..cli.main import main as package_main
-from ..cli.messages import describe_defect, describe_symmetry
+from ..cli.messages import describe_defect, describe_symmetry, what_became_of
 from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError, replacing
@@ -442,7 +442,7 @@ def _printer(quiet: bool) -> Callable[[str, float], None] | None:
 
 
 def _summary(options: argparse.Namespace, record: dict[str, Any]) -> str:
-    lines = [f"hybrid_quad: repaired {describe_defect(defect)}" for defect in record["defects"]]
+    lines = [f"hybrid_quad: {what_became_of(defect)} {describe_defect(defect)}" for defect in record["defects"]]
     lines += [f"hybrid_quad: warning: {warning}" for warning in record["warnings"]]
     if record["symmetry"]["deviation_percent"]:
         lines.append(f"hybrid_quad: {describe_symmetry(record['symmetry'])}")

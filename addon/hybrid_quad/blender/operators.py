@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from ..cli.messages import describe_defect, describe_elements
+from ..cli.messages import describe_defect, describe_elements, what_became_of
 from ..core import native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
@@ -136,7 +136,7 @@ class RemeshOperator(ActiveMeshOperator):
         target = place_result(context, obj, task, result, placement)
         self._target = target.name
         for defect in result.report["defects"]:
-            self.report({"INFO"}, f"Repaired {describe_defect(defect)}")
+            self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_defect(defect)}")
         for warning in result.report["warnings"]:
             self.report({"WARNING"}, warning)
         irregular = result.report["irregular_vertices"]

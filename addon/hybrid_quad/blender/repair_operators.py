@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..cli.messages import describe_defect
+from ..cli.messages import describe_defect, what_became_of
 from ..core import native
 from ..core.repair import Repaired, repair
 from .mesh_source import MeshSource, read_source
@@ -36,8 +36,9 @@ class OBJECT_OT_hybrid_quad_repair(ActiveMeshOperator):
             self.report({"ERROR"}, message_of(error))
             return {"CANCELLED"}
         for defect in found.defects:
-            left = "Left as it is" if defect.kept else "Repaired"
-            self.report({"WARNING"} if defect.kept else {"INFO"}, f"{left}: {describe_defect(defect.as_json())}")
+            row = defect.as_json()
+            became = what_became_of(row).capitalize()
+            self.report({"WARNING"} if defect.kept else {"INFO"}, f"{became}: {describe_defect(row)}")
         lost = len(source.vertices) - len(np.unique(found.vertex_origins[found.vertex_origins >= 0]))
         self.report(
             {"INFO"}, f'"{copy.name}": {len(found.triangles):,} triangles; {lost:,} vertices are not used any more'

@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ..cli.messages import what_became_of
 from .panel_base import HybridQuadPanel, draw_figure
 from .result_mesh import read_report
 
@@ -29,8 +30,9 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
         for name, value in _rows_of(report):
             draw_figure(rows, name, value)
         for defect in report.get("defects", ()):
+            became = what_became_of(defect).capitalize()
             self.layout.label(
-                text=f"Repaired: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
+                text=f"{became}: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
             )
         for warning in report.get("warnings", ()):
             self.layout.label(text=warning, icon="ERROR")

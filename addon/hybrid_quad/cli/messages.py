@@ -49,6 +49,11 @@ def verdict_on(defect: dict[str, Any]) -> str:
     return "left by remesh" if defect["kept"] else "repaired by remesh"
 
 
+def what_became_of(defect: dict[str, Any]) -> str:
+    """Of a defect that a run found, in its JSON form: "repaired", or "left as it is"."""
+    return "left as it is" if defect["kept"] else "repaired"
+
+
 def describe_defect(defect: dict[str, Any], verdict: str = "") -> str:
     """One line for a defect in its JSON form: what, where, and what becomes of it."""
     elements = defect["elements"]

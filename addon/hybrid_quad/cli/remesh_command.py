@@ -20,7 +20,7 @@ from ..core.remesh_part import PartRemesh
 from ..core.strokes import KINDS, Stroke, joined_lines, kind_of_name
 from ..core.validation import violations
 from . import exit_codes
-from .messages import describe_defect, describe_symmetry, say
+from .messages import describe_defect, describe_symmetry, say, what_became_of
 from .part_arguments import add_part, joined_mesh, part_solver
 from .progress_bar import ProgressBar
 
@@ -189,7 +189,7 @@ def run(arguments: argparse.Namespace) -> int:
     _write(arguments, result, mesh)
     if not arguments.quiet:
         for defect in result.report["defects"]:
-            say(f"repaired {describe_defect(defect)}")
+            say(f"{what_became_of(defect)} {describe_defect(defect)}")
         if result.report["symmetry"]["deviation_percent"]:
             say(describe_symmetry(result.report["symmetry"]))
         for warning in result.report["warnings"]:

@@ -10,17 +10,22 @@ namespace {
 
 using Path = std::vector<int>;  // vertices
 
-/// Lengths of the spokes from a star's middle to its sides, each of which its two neighbours share: sides[i] =
-/// spokes[i - 1] + spokes[i + 1]. Empty where they are not whole and positive. \pre an odd number of sides
+/// Twice the lengths of the spokes from a star's middle to its sides, each of which its two neighbours share: sides[i] =
+/// spokes[i - 1] + spokes[i + 1]. They are all odd or all even. \pre an odd number of sides
+std::vector<int> doubled_spokes(const std::vector<int>& sides) {
+  const int n = static_cast<int>(sides.size());
+  std::vector<int> spokes(n, 0);
+  for (int i = 0; i < n; ++i) spokes[0] += (i % 2 ? -1 : 1) * sides[(2 * i + 1) % n];  // going around by twos
+  for (int i = 0, k = 0; i + 1 < n; ++i, k = (k + 2) % n) spokes[(k + 2) % n] = 2 * sides[(k + 1) % n] - spokes[k];
+  return spokes;
+}
+
+/// Lengths of the spokes, empty where they are not whole and positive. \pre an odd number of sides
 /// \param least_last  the least length of the last side's spoke; without any the star's middle lies on that side
 std::vector<int> star_spokes(const std::vector<int>& sides, int least_last = 1) {
-  const int n = static_cast<int>(sides.size());
-  int alternating = 0;  // twice spokes[0], going around by twos
-  for (int i = 0; i < n; ++i) alternating += (i % 2 ? -1 : 1) * sides[(2 * i + 1) % n];
-  if (alternating % 2 != 0) return {};
-  std::vector<int> spokes(n);
-  spokes[0] = alternating / 2;
-  for (int i = 0, k = 0; i + 1 < n; ++i, k = (k + 2) % n) spokes[(k + 2) % n] = sides[(k + 1) % n] - spokes[k];
+  std::vector<int> spokes = doubled_spokes(sides);
+  if (spokes[0] % 2 != 0) return {};
+  for (int& spoke : spokes) spoke /= 2;
   const bool fits = *std::min_element(spokes.begin(), spokes.end() - 1) >= 1 && spokes.back() >= least_last;
   return fits ? spokes : std::vector<int>{};
 }
@@ -161,19 +166,41 @@ class PatternBuilder {
   std::vector<Path> border_;
 };
 
+struct Lengths {
+  int least, most;
+};
+
+/// Leaves of the lengths of a star's last side those with which no spoke is too short: each grows or shrinks with it.
+void keep_those_of_stars(std::vector<int> sides, Lengths& lengths) {
+  sides.back() = 0;
+  const std::vector<int> without = doubled_spokes(sides);
+  sides.back() = 1;
+  const std::vector<int> with_one = doubled_spokes(sides);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const int room = without[i] - (i + 1 < sides.size() ? 2 : 0);
+    if (with_one[i] > without[i]) lengths.least = std::max(lengths.least, -room);
+    else lengths.most = std::min(lengths.most, room);
+  }
+}
+
 /// All cuts into two stars between a pair of sides.
 void find_cuts(const std::vector<int>& sides, int first, int last, std::vector<Cut>& cuts) {
   const int longest = std::accumulate(sides.begin(), sides.end(), 0);
   Cut cut{{first, last}, {0, 0}, 0, 0, 0};
   for (cut.at[0] = 1; cut.at[0] < sides[first]; ++cut.at[0])
-    for (cut.at[1] = 1; cut.at[1] < sides[last]; ++cut.at[1])
-      for (cut.length = 1; cut.length < longest; ++cut.length) {
-        const std::vector<int> here = star_spokes(part_lengths(sides, cut, 0), 0), there = star_spokes(part_lengths(sides, cut, 1), 0);
+    for (cut.at[1] = 1; cut.at[1] < sides[last]; ++cut.at[1]) {
+      std::array<std::vector<int>, 2> parts{part_lengths(sides, cut, 0), part_lengths(sides, cut, 1)};
+      Lengths lengths{1, longest - 1};
+      for (const std::vector<int>& part : parts) keep_those_of_stars(part, lengths);
+      for (cut.length = lengths.least; cut.length <= lengths.most; ++cut.length) {
+        for (std::vector<int>& part : parts) part.back() = cut.length;
+        const std::vector<int> here = star_spokes(parts[0], 0), there = star_spokes(parts[1], 0);
         if (here.empty() || there.empty() || here.back() + there.back() == 0) continue;
         cut.quads = star_quads(here) + star_quads(there);
         cut.balance = std::min(*std::min_element(here.begin(), here.end()), *std::min_element(there.begin(), there.end()));
         cuts.push_back(cut);
       }
+    }
 }
 
 std::vector<Cut> cuts_into_stars(const std::vector<int>& sides) {

@@ -152,6 +152,8 @@ void MeshBuilder::normalize_positions() {
 
 void MeshBuilder::make_triangles() {
   std::vector<int> repeated, few, corners, flat;
+  std::vector<std::size_t> given_begin{0};
+  for (const int size : given_.face_sizes) given_begin.push_back(given_begin.back() + size);
   Vector3 middle = Vector3::Zero();
   for (const Vector3& p : positions_) middle += p / static_cast<double>(positions_.size());
   for (int f = 0; f < face_count(); ++f) {
@@ -165,7 +167,9 @@ void MeshBuilder::make_triangles() {
     if (corners.size() < 3) continue;
     if (corners.size() > 3) begin_far_from(middle, positions_, corners);
     bool is_flat = true;
-    for (const auto& t : triangulate_polygon(positions_, corners)) {
+    const int given_first = given_.face_vertices[given_begin[ordered_.given_face[f]]];
+    const auto fan_corner = std::find_if(corners.begin(), corners.end(), [&](int v) { return ordered_.given_vertex[v] == given_first; });
+    for (const auto& t : triangulate_polygon(positions_, corners, static_cast<int>(fan_corner - corners.begin()))) {
       if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
       is_flat = is_flat && has_no_area(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
       triangles_.push_back(t);
@@ -384,6 +388,7 @@ BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context) {
   MeshBuilder builder(soup);
   BuiltMesh built = builder.build(context);
   built.defects = std::move(builder.defects);
+  note_touching_vertices(built, built.defects);
   return built;
 }
 

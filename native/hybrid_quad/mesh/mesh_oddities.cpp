@@ -33,16 +33,16 @@ std::vector<int> intersecting_polygons(const BuiltMesh& built) {
 
 /// Copies of one input vertex are not meant: where these come from, the mesh was cut and says so.
 std::vector<int> touching_vertices(const BuiltMesh& built) {
-  const auto key = [&built](int v) {
-    const Vector3& p = built.mesh.position(v);
-    return std::make_tuple(p.x(), p.y(), p.z());
-  };
+  const std::vector<Vector3>& positions = built.mesh.positions();
   std::vector<int> order(built.mesh.vertex_count()), touching;
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int v, int w) { return std::make_pair(key(v), v) < std::make_pair(key(w), w); });
+  std::sort(order.begin(), order.end(), [&](int v, int w) {
+    const Vector3 &p = positions[v], &q = positions[w];
+    return std::tie(p.x(), p.y(), p.z(), v) < std::tie(q.x(), q.y(), q.z(), w);
+  });
   for (std::size_t i = 1; i < order.size(); ++i) {
     const int v = built.input_vertex[order[i - 1]], w = built.input_vertex[order[i]];
-    if (v == w || key(order[i - 1]) != key(order[i])) continue;
+    if (v == w || positions[order[i - 1]] != positions[order[i]]) continue;
     touching.push_back(v);
     touching.push_back(w);
   }
@@ -59,10 +59,14 @@ std::vector<int> far_vertices(const BuiltMesh& built) {
 
 }  // namespace
 
+void note_touching_vertices(const BuiltMesh& built, std::vector<Defect>& defects) {
+  note(defects, "touching_vertex", "vertex", touching_vertices(built), "stays: sheets that only touch are not joined");
+}
+
 std::vector<Defect> oddities_of(const BuiltMesh& built) {
   std::vector<Defect> defects;
   note(defects, "self_intersection", "face", intersecting_polygons(built), "stays: the quads intersect there as well");
-  note(defects, "touching_vertex", "vertex", touching_vertices(built), "stays: sheets that only touch are not joined");
+  note_touching_vertices(built, defects);
   note(defects, "far_vertex", "vertex", far_vertices(built), "stays, far from all others");
   return defects;
 }

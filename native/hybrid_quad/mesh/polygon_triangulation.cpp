@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace hybrid_quad {
 
@@ -40,13 +41,20 @@ double ear_quality(const std::vector<Vector2>& p, const std::vector<int>& left, 
   return area2 / ((b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm());
 }
 
-}  // namespace
+/// Whether a triangle has an area in space, and none, or a negative one, in the plane.
+bool stands_across(const std::array<Vector3, 3>& p, const std::array<Vector2, 3>& flat) {
+  constexpr double kRounding = 1e-12;
+  const Vector3 a = p[1] - p[0], b = p[2] - p[0];
+  const double area2 = a.cross(b).norm();
+  return area2 > kRounding * (a.squaredNorm() + b.squaredNorm()) && !(cross(flat[1] - flat[0], flat[2] - flat[0]) > kRounding * area2);
+}
 
-std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners) {
-  if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
-  const std::vector<Vector2> flat = flattened(positions, corners);
-  std::vector<int> left(corners.size());
-  for (int i = 0; i < static_cast<int>(left.size()); ++i) left[i] = i;
+/// Corners of ears, cut off one after the other.
+/// \param proper  becomes whether they all lie side by side in the plane
+std::vector<std::array<int, 3>> cut_ears(const std::vector<Vector2>& flat, bool& proper) {
+  std::vector<int> left(flat.size());
+  std::iota(left.begin(), left.end(), 0);
+  proper = true;
   constexpr double kBetter = 1 + 1e-9;  // what is better by less is as good, but for rounding
   constexpr int kLargePolygon = 64;  // beyond it the first ear is taken: the best one costs O(n^3) in all
   std::vector<std::array<int, 3>> triangles;
@@ -61,11 +69,38 @@ std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& 
         best = i;
       }
     }
-    if (best < 0) best = 0;  // no ear: the polygon crosses itself or has no area
-    triangles.push_back({corners[left[(best + n - 1) % n]], corners[left[best]], corners[left[(best + 1) % n]]});
+    if (best < 0) {  // the polygon crosses itself or has no area
+      best = 0;
+      proper = false;
+    }
+    triangles.push_back({left[(best + n - 1) % n], left[best], left[(best + 1) % n]});
     left.erase(left.begin() + best);
   }
-  triangles.push_back({corners[left[0]], corners[left[1]], corners[left[2]]});
+  triangles.push_back({left[0], left[1], left[2]});
+  return triangles;
+}
+
+std::vector<std::array<int, 3>> fan(int corners, int first) {
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 1; i + 1 < corners; ++i) triangles.push_back({first, (first + i) % corners, (first + i + 1) % corners});
+  return triangles;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners, int first) {
+  if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
+  const std::vector<Vector2> flat = flattened(positions, corners);
+  bool proper = true;
+  std::vector<std::array<int, 3>> triangles = cut_ears(flat, proper);
+  const auto is_across = [&](const std::array<int, 3>& t) {
+    return stands_across({positions[corners[t[0]]], positions[corners[t[1]]], positions[corners[t[2]]]}, {flat[t[0]], flat[t[1]], flat[t[2]]});
+  };
+  // Ears have an area in the plane, but for the last one, and for those of a polygon that has none.
+  if (is_across(triangles.back()) || (!proper && std::any_of(triangles.begin(), triangles.end(), is_across)))
+    triangles = fan(static_cast<int>(corners.size()), first);
+  for (std::array<int, 3>& t : triangles)
+    for (int& i : t) i = corners[i];
   return triangles;
 }
 

@@ -7,9 +7,11 @@
 
 namespace hybrid_quad {
 
-/// Triangles of a polygon by ear clipping in its best plane (Newell's normal); concave and slightly non-planar polygons
-/// are fine, and a polygon that crosses itself still gives corner count - 2 triangles.
-std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners);
+/// Triangles of a polygon, corner count - 2 of them, by ear clipping in its best plane (Newell's normal); concave and slightly
+/// non-planar polygons are fine. One that crosses or touches itself in that plane has no surface of its own: it gets the one
+/// that most readers give it, a fan.
+/// \param first  the fan's corner: index into `corners`
+std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners, int first = 0);
 
 /// Lets a polygon begin at the corner farthest from a point, of several as far at the first of them: of equal ears (a
 /// parallelogram has two ways to be cut) triangulate_polygon takes that of the first corner, however the polygon lies in space.

@@ -48,23 +48,67 @@ bool split_widest(QuadComplex& complex, double room, const std::vector<char>& co
   return true;
 }
 
-bool collapse_narrowest(QuadComplex& complex, double room, const std::vector<char>& counted) {
-  const Polychords polychords = trace_polychords(complex);
-  for (const Row& row : rows_of(complex, polychords, counted))
-    if (row.length <= room && collapse_polychord(complex, polychords, row.id)) return true;
-  return false;
-}
+/// Takes out one row after the other. One that may not go is tried again only when something changed beside it: surfaces with
+/// many handles have thousands of rows, and hardly one that may go.
+class RowRemoval {
+ public:
+  explicit RowRemoval(const QuadComplex& complex) : may_not_go_(complex.opposite.size(), 0) {}
+
+  bool collapse_narrowest(QuadComplex& complex, double room, const std::vector<char>& counted) {
+    const Polychords polychords = trace_polychords(complex);
+    const std::vector<int> vertex = complex.vertex;
+    std::vector<char> fails(polychords.length.size(), 0);
+    for (std::size_t d = 0; d < may_not_go_.size(); ++d)
+      if (may_not_go_[d]) fails[polychords.of_dart[d]] = 1;
+    for (const Row& row : rows_of(complex, polychords, counted)) {
+      if (row.length > room || fails[row.id]) continue;
+      if (collapse_polychord(complex, polychords, row.id)) {
+        remember(vertex, polychords, row.id, fails);
+        return true;
+      }
+      fails[row.id] = 1;
+    }
+    return false;
+  }
+
+ private:
+  /// What fails far from the row that went still does: whether a row may go depends on the quads around its vertices, and on the
+  /// number of edges of curves, which only falls.
+  /// \param vertex, polychords  of the complex before
+  void remember(const std::vector<int>& vertex, const Polychords& polychords, int gone, std::vector<char>& fails) {
+    const int darts = static_cast<int>(vertex.size());
+    const std::size_t vertices = vertex.empty() ? 0 : 1 + *std::max_element(vertex.begin(), vertex.end());
+    std::vector<char> moved(vertices, 0), is_near(vertices, 0);
+    for (int d = 0; d < darts; ++d)
+      if (polychords.of_dart[d] == gone) moved[vertex[d]] = moved[vertex[QuadComplex::next(d)]] = 1;
+    for (int q = 0; q < darts; q += 4) {
+      const auto corners = vertex.begin() + q;
+      if (std::any_of(corners, corners + 4, [&](int v) { return moved[v] != 0; }))
+        for (int i = 0; i < 4; ++i) is_near[corners[i]] = 1;
+    }
+    for (int d = 0; d < darts; ++d)
+      if (is_near[vertex[d]] || is_near[vertex[QuadComplex::next(d)]]) fails[polychords.of_dart[d]] = 0;
+    may_not_go_.clear();
+    for (int q = 0; q < darts; q += 4) {
+      if (polychords.of_dart[q] == gone || polychords.of_dart[q + 1] == gone) continue;  // the others stay in their order
+      for (int d = q; d < q + 4; ++d) may_not_go_.push_back(fails[polychords.of_dart[d]]);
+    }
+  }
+
+  std::vector<char> may_not_go_;  ///< of darts: the row they are on
+};
 
 }  // namespace
 
 int fit_quad_count(QuadComplex& complex, double wanted, double tolerance, const std::vector<char>& counted) {
   const double before = complex.quad_count();
   int changed = 0;
+  RowRemoval removal(complex);
   for (;; ++changed) {
     const double count = complex.quad_count(), off = count - wanted;
     if (std::abs(off) <= tolerance) return changed;
     const double room = std::min(std::abs(off) + tolerance, kMostChange * before - std::abs(count - before));
-    if (!(off > 0 ? collapse_narrowest(complex, room, counted) : split_widest(complex, room, counted))) return changed;
+    if (!(off > 0 ? removal.collapse_narrowest(complex, room, counted) : split_widest(complex, room, counted))) return changed;
   }
 }
 

@@ -85,15 +85,15 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     if (any && settings.as_needed && best.flawed_quads == 0) break;
     if (any && is_hopeless(settings, best)) continue;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
-    if (any && budget.left - settings.quads_factor * first_work < reserve) {
+    const bool refined = !limits.empty() || settings.quads_factor != 1 || settings.as_needed;
+    const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, settings.as_needed, limits) : ComponentPlan{};
+    const double growth = refined ? std::max(settings.quads_factor, finer.quads / plan.quads) : 1;
+    if (any && budget.left - growth * first_work < reserve) {
       best.gave_up = best.flawed_quads > 0;
       break;
     }
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
-      const bool refined = !limits.empty() || settings.quads_factor != 1 || settings.as_needed;
-      const ComponentPlan finer =
-          refined ? refined_plan(plan, settings.quads_factor, settings.as_needed, limits) : ComponentPlan{};
       ComponentResult result = run_pass(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass);
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       if (are_few) settle_count(planned, count, whole, wishes, options, result, clock, pass);

@@ -29,7 +29,7 @@ struct ComponentResult {
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
   int missed_counts = 0;  ///< quad edges too many or too few on curves that were to get a certain number
   double extracted_quads = 0;  ///< in all tries of the pass
-  double work = 0;       ///< faces of the working surface, for each of these tries
+  double work = 0;       ///< of a WorkBudget, of these tries
   bool gave_up = false;  ///< quads are flawed, and there was no work left for another pass
   int passes = 0;        ///< whole passes with other settings until none was flawed
   std::vector<std::string> warnings;

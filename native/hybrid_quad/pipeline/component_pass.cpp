@@ -130,7 +130,7 @@ class ComponentRemesher {
       const bool with_rows = !settings_.as_needed && (is_last || i >= kTriesWithoutRows);
       Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
       result_.extracted_quads += current.count();
-      result_.work += result_.working_faces;
+      result_.work += work_of(current);
       const double before_rows = current.quads_before_rows;
       if (choice.is_far(current)) {
         choice.set_aside(std::move(current));
@@ -142,14 +142,28 @@ class ComponentRemesher {
       const double extracted = current.count();
       finish(current);
       choice.take(std::move(current), extracted);
-      if (is_last || choice.is_done()) break;
+      if (is_last || choice.is_done() || is_in_vain(extracted, choice)) break;
       search.record(before_rows / choice.lost());
     }
     return choice.best();
   }
 
+  /// In faces of the working surface, of which there are more than three for a quad, unless counted curves ask for so many quads.
+  double work_of(const Extraction& extraction) const {
+    constexpr double kFacesPerQuad = 3;
+    return std::max<double>(result_.working_faces, kFacesPerQuad * extraction.quads_before_rows);
+  }
+
+  /// Where improvement takes out most quads, as those that counted curves squeeze, it takes out what another try has more of.
+  static bool is_in_vain(double extracted, const ExtractionChoice& choice) {
+    constexpr double kMostLost = 2;
+    return extracted >= kFew && choice.lost() > kMostLost;
+  }
+
+  static constexpr int kFew = 1000;  ///< quads: few are quick, and off by more of their number
+
   int most_tries() const {
-    constexpr int kOfMany = 4, kOfFew = 7, kFew = 1000;  // quads: few are quick, and off by more of their number
+    constexpr int kOfMany = 4, kOfFew = 7;
     return plan_.quads < kFew && settings_.quads_factor == 1 && !settings_.as_needed ? kOfFew : kOfMany;
   }
 
@@ -285,7 +299,7 @@ class ComponentRemesher {
       out.repairs.added_rings = repair.inset_quads + repair.restarred_edges;
       out.repairs.split_polychords = repair.split_polychords;
       out.quads_before_rows = complex.quad_count();
-      if (wanted > 0 && plan_.guides.empty() && wishes_.most_stretch <= 1)
+      if (is_in_reach(complex.quad_count(), wanted) && plan_.guides.empty() && wishes_.most_stretch <= 1)
         out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted);
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
@@ -302,6 +316,12 @@ class ComponentRemesher {
       if (p.combinatorial) out.combinatorial_area += p.area;
     }
     return out;
+  }
+
+  /// Rows are taken out or split one after the other, a third of the quads at most: from farther off they take long, and lead nowhere.
+  static bool is_in_reach(double quads, double wanted) {
+    constexpr double kReach = 4;
+    return wanted > 0 && quads < kReach * wanted && wanted < kReach * quads;
   }
 
   /// A limit below the length that was asked at quad q.
