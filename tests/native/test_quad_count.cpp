@@ -60,8 +60,9 @@ TEST(QuadCount, NoRowIsLeftThatMayGo) {
   const Polychords polychords = trace_polychords(c);
   ASSERT_GT(polychords.length.size(), 0u);
   for (std::size_t id = 0; id < polychords.length.size(); ++id) {
+    if (polychords.length[id] > room) continue;
     QuadComplex fewer = c;
-    if (polychords.length[id] <= room) EXPECT_FALSE(collapse_polychord(fewer, polychords, static_cast<int>(id))) << id;
+    EXPECT_FALSE(collapse_polychord(fewer, polychords, static_cast<int>(id))) << id;
   }
 }
 
