@@ -241,6 +241,32 @@ TEST(FrameField, StrongConesAreSplit) {
   for (const auto index : field.cone_index) EXPECT_LE(std::abs(index), 1);
 }
 
+TEST(FrameField, NeighbouringConesThatCancelAreCancelled) {
+  // A constant field, of which the two frames beside an edge are turned apart by more than an eighth.
+  const WorkingSurface surface = surface_of(test::flat_grid(12, 12), 0.2, 200);
+  const TriangleMesh& mesh = surface.mesh;
+  const FaceAngles angles(mesh);
+  const FrameField even = test::constant_frames(surface, Vector3::UnitX(), Vector3::UnitY());
+  std::vector<double> directions = frame_directions(mesh, even.du, even.dv);
+  int inner = -1;
+  for (int h = 0; h < mesh.halfedge_count() && inner < 0; ++h) {
+    const auto is_inside = [&](int v) { return (mesh.position(v) - Vector3(0.5, 0.5, 0)).norm() < 0.2; };
+    if (is_inside(mesh.from(h)) && is_inside(mesh.to(h))) inner = h;
+  }
+  directions[inner / 3] += 0.42;
+  directions[mesh.opposite(inner) / 3] -= 0.42;
+  const auto cones = [&] {
+    int count = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      count += !mesh.is_boundary_vertex(v) && quarters_at(mesh, angles, directions, v) != 0;
+    return count;
+  };
+  EXPECT_EQ(cones(), 2);
+  EXPECT_EQ(cancel_cones(surface, angles, directions), 1);
+  EXPECT_EQ(cones(), 0);
+  EXPECT_EQ(cancel_cones(surface, angles, directions), 0);
+}
+
 TEST(FrameField, SolutionWithLessEnergyOrFewerConesIsKept) {
   for (const TriangleMesh& mesh : {test::icosphere(4), test::torus(40, 20), test::box(6)}) {
     const WorkingSurface surface = surface_of(mesh, 0.2, 40);

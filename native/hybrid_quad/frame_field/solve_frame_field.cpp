@@ -126,7 +126,7 @@ int inner_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std
 }
 
 Solution finished(const WorkingSurface& surface, const FaceAngles& angles, const CrossUnknowns& cross, std::vector<Complex> z,
-                  const std::vector<double>& diffusion_times, const RunContext& context) {
+                  const std::vector<double>& diffusion_times, bool may_cancel, const RunContext& context) {
   std::vector<double> mass(z.size());
   for (const double time : diffusion_times) {
     for (std::size_t i = 0; i < z.size(); ++i) mass[i] = 2 * cross.diffusion_mass[i] / time;
@@ -135,6 +135,7 @@ Solution finished(const WorkingSurface& surface, const FaceAngles& angles, const
   Solution solution;
   solution.directions = directions_of(cross, z);
   split_strong_cones(surface, angles, solution.directions);
+  if (may_cancel) cancel_cones(surface, angles, solution.directions);
   solution.record.quarters = inner_quarters(surface.mesh, angles, solution.directions);
   solution.record.energy = cross_energy(cross.system, z);
   return solution;
@@ -163,9 +164,9 @@ std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const Face
   const bool compares = !(options.turn_for_lengths > 0);
   std::array<Solution, 2> both;
   parallel_for(compares ? 2 : 1, context.threads, [&](int i) {
-    both[i] = i == 0 ? finished(surface, angles, cross, relax_crosses(levels, options.sweeps, each), options.diffusion_times, each)
+    both[i] = i == 0 ? finished(surface, angles, cross, relax_crosses(levels, options.sweeps, each), options.diffusion_times, compares, each)
                      : finished(surface, angles, cross, smoothest_crosses(levels, kLinearSweeps, each),
-                                options.smoothest_diffusion_times, each);
+                                options.smoothest_diffusion_times, compares, each);
   });
   if (!compares) both[1] = both[0];
   return both;

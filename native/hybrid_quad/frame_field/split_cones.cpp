@@ -32,6 +32,23 @@ class ConeSplitter {
 
   int quarters(int v) const { return quarters_at(mesh_, angles_, directions_, v); }
 
+  /// Where a neighbour of v has the opposite index, moves v's quarter there along the edge whose frames turn most already.
+  bool cancel(int v) {
+    const int index = quarters(v);
+    std::vector<std::pair<double, int>> candidates;
+    const int first = mesh_.outgoing(v);
+    int h = first;
+    do {
+      const double turn = index * unexpected_turn(mesh_.opposite(h));
+      if (turn > 0 && is_free_vertex(mesh_.to(h)) && quarters(mesh_.to(h)) == -index) candidates.push_back({-turn, h});
+      h = mesh_.rotate_ccw(h);
+    } while (h != first);
+    std::sort(candidates.begin(), candidates.end());
+    for (const auto& candidate : candidates)
+      if (turn_frames(candidate.second, index, kEighth + kMargin + candidate.first)) return true;
+    return false;
+  }
+
   /// Moves one quarter from v along the edge whose frames turn most already. \return false if no edge lets it pass
   bool split(int v) {
     const int sign = quarters(v) > 0 ? 1 : -1;
@@ -40,7 +57,7 @@ class ConeSplitter {
     int h = first;
     do {
       // Counterclockwise around v one passes from the right side of an outgoing edge to its left.
-      const double turn = sign * turn_across(mesh_, angles_, directions_, mesh_.opposite(h)).angle;
+      const double turn = sign * unexpected_turn(mesh_.opposite(h));
       if (is_free_vertex(mesh_.to(h))) candidates.push_back({-turn, h});
       h = mesh_.rotate_ccw(h);
     } while (h != first);
@@ -51,6 +68,9 @@ class ConeSplitter {
   }
 
  private:
+  /// Axes are renamed where this is more than an eighth.
+  double unexpected_turn(int h) const { return turn_across(mesh_, angles_, directions_, h).angle - angles_.expected_turn(h); }
+
   int badness(const std::array<int, 4>& vertices) const {
     int sum = 0;
     for (const int v : vertices)
@@ -95,6 +115,14 @@ int split_strong_cones(const WorkingSurface& surface, const FaceAngles& angles, 
       }
   }
   return left;
+}
+
+int cancel_cones(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions) {
+  ConeSplitter splitter(surface, angles, directions);
+  int cancelled = 0;
+  for (int v = 0; v < surface.mesh.vertex_count(); ++v)
+    if (splitter.is_free_vertex(v) && splitter.quarters(v) != 0) cancelled += splitter.cancel(v);
+  return cancelled;
 }
 
 }  // namespace hybrid_quad

@@ -13,4 +13,8 @@ namespace hybrid_quad {
 /// \return number of vertices left beyond +-1 (no neighbour could take a quarter)
 int split_strong_cones(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions);
 
+/// Turns frames a little where neighbouring vertices off features have opposite indices, so that they have none.
+/// \return how many pairs are gone
+int cancel_cones(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions);
+
 }  // namespace hybrid_quad
