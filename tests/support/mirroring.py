@@ -35,5 +35,5 @@ def assert_seam(vertices: np.ndarray, quads: np.ndarray, axis: int) -> int:
 
 
 def _from_least(corners: list[list[float]]) -> tuple[tuple[float, ...], ...]:
-    first = corners.index(min(corners))
-    return tuple(map(tuple, corners[first:] + corners[:first]))
+    # Of all ways round: two corners may lie in one place.
+    return min(tuple(map(tuple, corners[first:] + corners[:first])) for first in range(len(corners)))
