@@ -97,11 +97,12 @@ GuideMap guides_on(const Wishes& wishes, const TriangleMesh& finer) {
 
 FrameFieldOptions field_options(const WorkingSurface& surface, const Wishes& wishes, const RemeshOptions& options) {
   FrameFieldOptions field;
-  constexpr double kLeastSpread = 0.5;
-  field.curvature_spread = std::max(kLeastSpread, 2 * options.field_smoothness);
   field.curvature_alignment = std::pow(1 - options.field_smoothness, 3);
   if (options.anisotropy > 1) field.curvature_alignment = std::max(field.curvature_alignment, 1.0);
   if (!wishes.density.empty()) field.turn_for_lengths = std::min(1.0, 2 * options.size_fidelity);
+  // Lengths that vary need cones where the curvature is, to the vertex.
+  constexpr double kLeastSpread = 0.5;
+  field.curvature_spread = std::max(kLeastSpread, 2 * options.field_smoothness * (1 - field.turn_for_lengths));
   if (wishes.guides.empty()) return field;
   const std::vector<Place> places = places_of(surface, *wishes.index);
   field.guides.assign(surface.mesh.face_count(), Vector3::Zero());
