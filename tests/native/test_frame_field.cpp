@@ -10,7 +10,7 @@
 #include "hybrid_quad/frame_field/frame_topology.h"
 #include "hybrid_quad/frame_field/smooth_connection.h"
 #include "hybrid_quad/frame_field/smoothest_crosses.h"
-#include "hybrid_quad/frame_field/split_cones.h"
+#include "hybrid_quad/frame_field/move_cones.h"
 #include "hybrid_quad/grid_algebra/quarter_turn.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"

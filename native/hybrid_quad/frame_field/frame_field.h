@@ -60,8 +60,8 @@ struct FrameFieldOptions {
 };
 
 /// The smoothest 4-symmetric field aligned to features and boundaries, as orthonormal frames (|du| = |dv| = 1): z = e^{4 i
-/// theta} on faces with a connection of averaged curvature (docs/decisions/0030). Solved twice, by multilevel relaxation and from the smoothest field
-/// without |z| = 1, both finished by diffusion; the one with less energy and fewer cones is kept (docs/decisions/0011).
+/// theta} on faces with a connection of averaged curvature (docs/decisions/0030). Solved twice, by multilevel relaxation and
+/// from the smoothest field without |z| = 1, both finished by diffusion; the one with less energy and fewer cones is kept (docs/decisions/0011).
 /// \post sum of cone indices and of the features' turning agrees with the Euler characteristic (Poincare-Hopf)
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context);
 

@@ -11,7 +11,7 @@
 #include "hybrid_quad/frame_field/smooth_connection.h"
 #include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/soft_alignment.h"
-#include "hybrid_quad/frame_field/split_cones.h"
+#include "hybrid_quad/frame_field/move_cones.h"
 
 namespace hybrid_quad {
 

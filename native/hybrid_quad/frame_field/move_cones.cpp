@@ -1,4 +1,4 @@
-#include "hybrid_quad/frame_field/split_cones.h"
+#include "hybrid_quad/frame_field/move_cones.h"
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,9 @@ bool is_free_face(const WorkingSurface& surface, int f) {
   return true;
 }
 
-class ConeSplitter {
+class ConeMover {
  public:
-  ConeSplitter(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions)
+  ConeMover(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions)
       : surface_(surface), mesh_(surface.mesh), angles_(angles), directions_(directions) {}
 
   bool is_free_vertex(int v) const {
@@ -32,25 +32,21 @@ class ConeSplitter {
 
   int quarters(int v) const { return quarters_at(mesh_, angles_, directions_, v); }
 
-  /// Where a neighbour of v has the opposite index, moves v's quarter there along the edge whose frames turn most already.
-  bool cancel(int v) {
-    const int index = quarters(v);
-    std::vector<std::pair<double, int>> candidates;
-    const int first = mesh_.outgoing(v);
-    int h = first;
-    do {
-      const double turn = index * unexpected_turn(mesh_.opposite(h));
-      if (turn > 0 && is_free_vertex(mesh_.to(h)) && quarters(mesh_.to(h)) == -index) candidates.push_back({-turn, h});
-      h = mesh_.rotate_ccw(h);
-    } while (h != first);
-    std::sort(candidates.begin(), candidates.end());
-    for (const auto& candidate : candidates)
-      if (turn_frames(candidate.second, index, kEighth + kMargin + candidate.first)) return true;
-    return false;
-  }
-
   /// Moves one quarter from v along the edge whose frames turn most already. \return false if no edge lets it pass
   bool split(int v) {
+    return move_quarter(v, [](int, double) { return true; });
+  }
+
+  /// Likewise, to a neighbour that has the opposite index.
+  bool cancel(int v) {
+    const int index = quarters(v);
+    return move_quarter(v, [&](int to, double turn) { return turn > 0 && quarters(to) == -index; });
+  }
+
+ private:
+  /// \param takes  whether it may go to a neighbour, and across an edge that already turns so far
+  template <class Takes>
+  bool move_quarter(int v, const Takes& takes) {
     const int sign = quarters(v) > 0 ? 1 : -1;
     std::vector<std::pair<double, int>> candidates;
     const int first = mesh_.outgoing(v);
@@ -58,7 +54,7 @@ class ConeSplitter {
     do {
       // Counterclockwise around v one passes from the right side of an outgoing edge to its left.
       const double turn = sign * unexpected_turn(mesh_.opposite(h));
-      if (is_free_vertex(mesh_.to(h))) candidates.push_back({-turn, h});
+      if (is_free_vertex(mesh_.to(h)) && takes(mesh_.to(h), turn)) candidates.push_back({-turn, h});
       h = mesh_.rotate_ccw(h);
     } while (h != first);
     std::sort(candidates.begin(), candidates.end());
@@ -67,7 +63,6 @@ class ConeSplitter {
     return false;
   }
 
- private:
   /// Axes are renamed where this is more than an eighth.
   double unexpected_turn(int h) const { return turn_across(mesh_, angles_, directions_, h).angle - angles_.expected_turn(h); }
 
@@ -104,12 +99,12 @@ class ConeSplitter {
 }  // namespace
 
 int split_strong_cones(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions) {
-  ConeSplitter splitter(surface, angles, directions);
+  ConeMover mover(surface, angles, directions);
   int left = 0;
   for (int v = 0; v < surface.mesh.vertex_count(); ++v) {
-    if (!splitter.is_free_vertex(v)) continue;
-    while (std::abs(splitter.quarters(v)) > 1)
-      if (!splitter.split(v)) {
+    if (!mover.is_free_vertex(v)) continue;
+    while (std::abs(mover.quarters(v)) > 1)
+      if (!mover.split(v)) {
         ++left;
         break;
       }
@@ -118,10 +113,10 @@ int split_strong_cones(const WorkingSurface& surface, const FaceAngles& angles, 
 }
 
 int cancel_cones(const WorkingSurface& surface, const FaceAngles& angles, std::vector<double>& directions) {
-  ConeSplitter splitter(surface, angles, directions);
+  ConeMover mover(surface, angles, directions);
   int cancelled = 0;
   for (int v = 0; v < surface.mesh.vertex_count(); ++v)
-    if (splitter.is_free_vertex(v) && splitter.quarters(v) != 0) cancelled += splitter.cancel(v);
+    if (mover.is_free_vertex(v) && mover.quarters(v) != 0) cancelled += mover.cancel(v);
   return cancelled;
 }
 
