@@ -99,6 +99,20 @@ TEST(InvertedQuads, OneOfTwoSheetsInOnePlaceAgrees) {
   EXPECT_FALSE(is_inverted(square(0.01), index, {kEnough, true}));
 }
 
+TEST(InvertedQuads, TheEdgeOfASheetInThePlaceOfAnotherIsNoExcuse) {
+  // Of the sheet that agrees, a strip as wide as `width` lies over the other one, under the middle of the quad.
+  const auto strip_over_sheet = [](double width) {
+    const double left = 2 - width / 2, right = 2 + width / 2;
+    const std::vector<Vector3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {left, 0, 0}, {right, 0, 0}, {right, 4, 0}, {left, 4, 0}};
+    return TriangleMesh(points, {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}});
+  };
+  const std::array<Vector3, 4> quad{Vector3(1.99, 1, 0), Vector3(2.01, 1, 0), Vector3(2.01, 1.02, 0), Vector3(1.99, 1.02, 0)};
+  const SurfaceIndex narrow(strip_over_sheet(0.001), {}), wide(strip_over_sheet(0.02), {});
+  constexpr double kEnough = 1e-3;
+  EXPECT_TRUE(is_inverted(quad, narrow, {kEnough, true}));
+  EXPECT_FALSE(is_inverted(quad, wide, {kEnough, true}));
+}
+
 TEST(SurfaceDistance, ParallelSheets) {
   const TriangleMesh sheet = test::flat_grid(6, 6);
   const SurfaceIndex index(sheet, {});

@@ -77,6 +77,33 @@ TEST(SizePlan, ShorterEdgesAtPlacesAreNoReasonForMoreQuads) {
   EXPECT_GT(refined_plan(coarse, 1.0, true, {{Vector3(0, 0, 1), 0.05}}).quads, coarse.quads);
 }
 
+TEST(SizePlan, FeaturesByAngleGiveWayAroundAPlace) {
+  const TriangleMesh cube = test::box(12, Vector3(4, 4, 4));
+  const Vector3 corner = cube.position(0);
+  const auto features_left = [&](const MarkedEdges& marked) {
+    const ComponentPlan whole = plan_component(cube, 1.0, marked, {}, Wishes{}, RemeshOptions{}, RunContext{});
+    const ComponentPlan fewer = without_features_at(whole, {corner}, 0, RunContext{});
+    EXPECT_EQ(violations_of(fewer.features, fewer.mesh), std::vector<std::string>{});
+    EXPECT_NEAR(fewer.quads, whole.quads, 1e-6 * whole.quads);
+    int near = 0, far = 0, far_before = 0;
+    for (int h = 0; h < fewer.mesh.halfedge_count(); ++h) {
+      const double distance = std::max((fewer.mesh.position(fewer.mesh.from(h)) - corner).norm(), (fewer.mesh.position(fewer.mesh.to(h)) - corner).norm());
+      if (fewer.features.is_feature(h)) ++(distance < 1 ? near : far);
+      far_before += distance > 2 && whole.features.is_feature(h);
+      EXPECT_LE(fewer.features.is_feature(h), whole.features.is_feature(h));
+    }
+    EXPECT_GE(far, far_before);
+    EXPECT_EQ(fewer.given_way > whole.given_way, near == 0);
+    return near;
+  };
+  EXPECT_EQ(features_left({}), 0);
+  MarkedEdges all;
+  for (int h = 0; h < cube.halfedge_count(); ++h)
+    if (cube.opposite(h) < h && cube.normal(h / 3).dot(cube.normal(cube.opposite(h) / 3)) < 0.5) all.ends.push_back({cube.from(h), cube.to(h)});
+  all.guides.assign(all.ends.size(), -1);
+  EXPECT_GT(features_left(all), 0);
+}
+
 TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1));
   const auto features_for = [&](double quads, const MarkedEdges& marked) {

@@ -8,12 +8,6 @@ namespace hybrid_quad {
 
 namespace {
 
-Vector3 centre_of(const QuadMesh& mesh, int q) {
-  Vector3 sum = Vector3::Zero();
-  for (const int v : mesh.quads[q]) sum += mesh.positions[v];
-  return 0.25 * sum;
-}
-
 double reach_of(const QuadMesh& mesh, int q, const Vector3& centre) {
   double reach = 0;
   for (const int v : mesh.quads[q]) reach = std::max(reach, (mesh.positions[v] - centre).norm());
@@ -29,7 +23,7 @@ Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, d
     ++flawed_before_;
   }
   for (int q = 0; q < static_cast<int>(extracted.quads.size()); ++q) {
-    centre_.push_back(centre_of(extracted, q));
+    centre_.push_back(middle_of(extracted, q));
     reach_.push_back(reach_of(extracted, q, centre_.back()));
     mean_edge_ += reach_.back() * 1.4142135623730951 / static_cast<double>(extracted.quads.size());
   }
@@ -42,7 +36,7 @@ bool Restoration::give_up_around(const QuadMesh& improved, const std::vector<int
   ++rounds_;
   bool any = false;
   for (const int f : flawed) {
-    const Vector3 centre = centre_of(improved, f);
+    const Vector3 centre = middle_of(improved, f);
     const double radius = reach_of(improved, f, centre) + margin;
     std::vector<int> near;
     bool hopeless = false;

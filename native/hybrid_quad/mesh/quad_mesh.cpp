@@ -121,6 +121,12 @@ double mean_edge_length(const QuadMesh& mesh) {
   return mesh.quads.empty() ? 0 : sum / (4.0 * static_cast<double>(mesh.quads.size()));
 }
 
+Vector3 middle_of(const QuadMesh& mesh, int q) {
+  Vector3 sum = Vector3::Zero();
+  for (const int v : mesh.quads[q]) sum += mesh.positions[v];
+  return 0.25 * sum;
+}
+
 std::vector<std::string> violations_of(const QuadMesh& mesh) {
   std::vector<std::string> found;
   if (!readable(mesh, found)) return found;

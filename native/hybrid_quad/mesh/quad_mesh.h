@@ -27,6 +27,9 @@ struct QuadMesh {
 /// Of the sides of all quads (an inner edge counts twice); 0 without quads.
 double mean_edge_length(const QuadMesh& mesh);
 
+/// The mean of a quad's corners.
+Vector3 middle_of(const QuadMesh& mesh, int q);
+
 /// Everything the result must satisfy as an indexed polygon mesh, checked by code that shares nothing with
 /// what built it: four distinct vertices a face, edges in one or two faces with opposite direction, one fan a
 /// vertex, no interior vertex with fewer than three faces, no two faces with two common edges, finite

@@ -15,6 +15,8 @@ double squared_distance_to_box(const Vector3& p, const Vector3& low, const Vecto
   return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
 }
 
+}  // namespace
+
 SegmentPoint nearest_on_segment(const Vector3& p, const std::array<Vector3, 2>& segment, int id) {
   const Vector3 along = segment[1] - segment[0];
   const double squared_length = along.squaredNorm();
@@ -25,8 +27,6 @@ SegmentPoint nearest_on_segment(const Vector3& p, const std::array<Vector3, 2>& 
   point.squared_distance = (segment[0] + point.fraction * along - p).squaredNorm();
   return point;
 }
-
-}  // namespace
 
 SegmentIndex::SegmentIndex(std::vector<std::array<Vector3, 2>> segments) : segments_(std::move(segments)) {
   order_.resize(segments_.size());

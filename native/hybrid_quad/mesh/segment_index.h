@@ -14,6 +14,9 @@ struct SegmentPoint {
   double squared_distance = 0;
 };
 
+/// The point of one segment, called `id`, that is nearest to p.
+SegmentPoint nearest_on_segment(const Vector3& p, const std::array<Vector3, 2>& segment, int id = 0);
+
 /// Nearest points of a set of segments: a bounding-volume tree, ties by segment id.
 class SegmentIndex {
  public:

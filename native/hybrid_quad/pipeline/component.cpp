@@ -16,20 +16,24 @@ namespace {
 /// The first are the defaults; the others are tried, in this order, only where quads came out that fold or have no area,
 /// each with shorter edges where that happened before.
 constexpr PassSettings kSettings[] = {{},
-                                      {1.03, 1e-4, false},
-                                      {0.98, 1e-5, false},
-                                      {1.0, 1e-4, true},
-                                      {1.3, 1e-4, true},
-                                      {1.8, 1e-5, true},
-                                      {2.5, 1e-4, true},
-                                      {4.0, 1e-5, true},
-                                      {3.2, 1e-4, true},
-                                      {5.0, 1e-4, true}};
+                                      {1.03, 1e-4, PassKind::kAgain},
+                                      {0.98, 1e-5, PassKind::kAgain},
+                                      {1.0, 1e-4, PassKind::kWithoutFeatures},
+                                      {1.0, 1e-4, PassKind::kAsNeeded},
+                                      {1.3, 1e-4, PassKind::kAsNeeded},
+                                      {1.8, 1e-5, PassKind::kAsNeeded},
+                                      {2.5, 1e-4, PassKind::kAsNeeded},
+                                      {4.0, 1e-5, PassKind::kAsNeeded},
+                                      {3.2, 1e-4, PassKind::kAsNeeded},
+                                      {5.0, 1e-4, PassKind::kAsNeeded}};
+
+bool is_only_for_flawed(PassKind kind) { return kind == PassKind::kWithoutFeatures || kind == PassKind::kAsNeeded; }
+
 /// So many flawed quads are not mended by another pass with as few: the surface is thinner than quads are long. More are taken out
 /// again afterwards.
 bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
   constexpr int kMany = 12;
-  return best.flawed_quads > kMany && !settings.as_needed;
+  return best.flawed_quads > kMany && !is_only_for_flawed(settings.kind);
 }
 
 /// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
@@ -73,20 +77,28 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
   const Extractable extractable = extractable_plan(planned, count);
   const bool are_few = extractable.are_few, is_rough = extractable.is_rough;
-  const ComponentPlan& plan = extractable.plan;
   ComponentResult best;
+  ComponentPlan fewer_features;
+  const ComponentPlan* plan_of_best = &planned;
   std::string broken;
   bool any = false;
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
+  std::vector<Vector3> flawed;
   for (PassSettings settings : kSettings) {
     settings.is_rough = is_rough;
-    if (any && settings.as_needed && best.flawed_quads == 0) break;
+    if (any && is_only_for_flawed(settings.kind) && best.flawed_quads == 0) break;
     if (any && is_hopeless(settings, best)) continue;
+    const bool without_features = settings.kind == PassKind::kWithoutFeatures, as_needed = settings.kind == PassKind::kAsNeeded;
+    if (without_features) {
+      fewer_features = without_features_at(planned, flawed, options.symmetry.planes, context);
+      if (fewer_features.given_way == planned.given_way) continue;
+    }
+    const ComponentPlan& plan = without_features ? fewer_features : extractable.plan;
     if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
-    const bool refined = !limits.empty() || settings.quads_factor != 1 || settings.as_needed;
-    const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, settings.as_needed, limits) : ComponentPlan{};
+    const bool refined = !limits.empty() || settings.quads_factor != 1 || as_needed;
+    const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
     const double growth = refined ? std::max(settings.quads_factor, finer.quads / plan.quads) : 1;
     if (any && budget.left - growth * first_work < reserve) {
       best.gave_up = best.flawed_quads > 0;
@@ -96,15 +108,19 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       const RunContext pass = context.in_stage(context.stage, begin, end);
       ComponentResult result = run_pass(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass);
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
-      if (are_few) settle_count(planned, count, whole, wishes, options, result, clock, pass);
+      flawed.insert(flawed.end(), result.flawed_places.begin(), result.flawed_places.end());
+      const ComponentPlan& unrefined = without_features ? fewer_features : planned;
+      if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;
       if (any) budget.left -= result.work;
       else first_work = result.work;
-      if (!any || badness(result) < badness(best))
+      if (!any || badness(result) < badness(best)) {
         best = std::move(result);
-      else
+        plan_of_best = &unrefined;
+      } else {
         best.passes = result.passes;
+      }
       any = true;
       if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
     } catch (const InternalError& error) {
@@ -115,7 +131,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     end += 0.5 * (1 - end);
   }
   if (!any) throw InternalError("remesh", broken);
-  if (!are_few) settle_count(planned, count, whole, wishes, options, best, clock, context);
+  if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
   return best;
 }

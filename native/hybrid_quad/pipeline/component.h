@@ -27,6 +27,8 @@ struct ComponentResult {
   int flawed_quads = 0;  ///< quads that point against the surface or have no area
   int doubtful_quads = 0;  ///< these and smaller ones that only just pass that test
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
+  std::vector<Vector3> flawed_places;  ///< middles of flawed quads
+  int features_given_way = 0;  ///< feature curves by angle that gave way to the number of quads, to others or to valid quads
   int missed_counts = 0;  ///< quad edges too many or too few on curves that were to get a certain number
   double extracted_quads = 0;  ///< in all tries of the pass
   double work = 0;       ///< of a WorkBudget, of these tries

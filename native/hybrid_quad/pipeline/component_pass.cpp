@@ -62,7 +62,9 @@ class ComponentRemesher {
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
     require_valid("improve", result_.mesh);
-    result_.flawed_quads = static_cast<int>(finishing_.flawed(result_.mesh, context_.threads).size());
+    for (const int q : finishing_.flawed(result_.mesh, context_.threads)) result_.flawed_places.push_back(middle_of(result_.mesh, q));
+    result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
+    result_.features_given_way = plan_.given_way;
     const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
     for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
@@ -121,13 +123,14 @@ class ComponentRemesher {
   Extraction extract_with_count(const FrameField& unit) {
     constexpr int kTriesWithoutRows = 1;
     const int tries = most_tries();
+    const bool is_later = settings_.kind != PassKind::kFirst;
     CountSearch search(plan_.quads, least_to_ask());
     ExtractionChoice choice = choice_of_tries(tries);
     for (int i = 0; i < tries; ++i) {
       const bool is_stuck = search.at_least() || search.is_stuck();
       if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
       const bool is_last = i + 1 == tries || is_stuck;
-      const bool with_rows = !settings_.as_needed && (is_last || i >= kTriesWithoutRows);
+      const bool with_rows = settings_.kind != PassKind::kAsNeeded && (is_later || is_last || i >= kTriesWithoutRows);
       Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
       result_.extracted_quads += current.count();
       result_.work += work_of(current);
@@ -164,14 +167,15 @@ class ComponentRemesher {
 
   int most_tries() const {
     constexpr int kOfMany = 4, kOfFew = 7;
-    return plan_.quads < kFew && settings_.quads_factor == 1 && !settings_.as_needed ? kOfFew : kOfMany;
+    return plan_.quads < kFew && settings_.quads_factor == 1 && settings_.kind != PassKind::kAsNeeded ? kOfFew : kOfMany;
   }
 
-  /// Passes with as many quads as it takes are there for flawed quads: there the count matters less.
+  /// Passes after the first are there for flawed quads: there the count matters less.
   ExtractionChoice choice_of_tries(int tries) const {
     constexpr double kNearAsNeeded = 0.15, kLastResort = 2, kFar = 0.15, kRough = 0.5;
     if (settings_.is_rough) return ExtractionChoice(plan_.quads, kRough, 1, kRough);
-    if (!settings_.as_needed) return ExtractionChoice(plan_.quads, count_tolerance(), 2, kFar);
+    if (settings_.kind == PassKind::kFirst) return ExtractionChoice(plan_.quads, count_tolerance(), 2, kFar);
+    if (settings_.kind == PassKind::kAgain) return ExtractionChoice(plan_.quads, kNearAsNeeded, 2, kFar);
     return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries, kFar);
   }
 
@@ -326,8 +330,7 @@ class ComponentRemesher {
 
   /// A limit below the length that was asked at quad q.
   LengthLimit shorter_at(const SurfaceIndex& index, int q) const {
-    Vector3 centre = Vector3::Zero();
-    for (const int v : result_.mesh.quads[q]) centre += 0.25 * result_.mesh.positions[v];
+    const Vector3 centre = middle_of(result_.mesh, q);
     double length = std::numeric_limits<double>::infinity();
     for (const int v : mesh_.face(index.nearest(centre).face)) length = std::min(length, plan_.target[v]);
     return {centre, kShorterWhereFlawed * length};

@@ -4,12 +4,20 @@
 
 namespace hybrid_quad {
 
+/// What a pass is for, and what gives way in it.
+enum class PassKind {
+  kFirst,            ///< features and asked lengths as planned, tries at the number of quads
+  kAgain,            ///< likewise; the number is settled afterwards
+  kWithoutFeatures,  ///< likewise, and features by angle give way around flawed quads of earlier passes
+  kAsNeeded,         ///< as many quads as it takes; the number is settled afterwards
+};
+
 /// Settings of one whole pass over a component.
 struct PassSettings {
   double quads_factor = 1.0;
   double curl_weight = 1e-5;
-  bool as_needed = false;  ///< nothing gives way for the number of quads
-  bool is_rough = false;   ///< the number is met afterwards, quad by quad
+  PassKind kind = PassKind::kFirst;
+  bool is_rough = false;  ///< the number is met afterwards, quad by quad
 };
 
 /// All stages from the working surface to the improved quads, with tries at the number of quads.

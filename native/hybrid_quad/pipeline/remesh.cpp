@@ -224,10 +224,10 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   report.vertices = static_cast<int>(result.mesh.positions.size());
   for (const ComponentPlan& plan : plans) report.fewest_quads += images * fewest_quads(plan.mesh);
   if (std::abs(report.quads / wanted - 1) > kCountTolerance) report.warnings.push_back(count_warning(report, wanted));
-  for (const ComponentPlan& plan : plans) report.features_given_way += images * plan.given_way;
+  for (const ComponentResult& part : parts) report.features_given_way += images * part.features_given_way;
   if (report.features_given_way > 0)
     report.warnings.push_back(std::to_string(report.features_given_way) +
-                              " curves of edges by angle gave way to the number of quads, or to others on top of them: more quads, or marks, keep them");
+                              " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid quads: more quads, or marks, keep them");
   const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
     report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");

@@ -7,6 +7,7 @@
 
 #include "hybrid_quad/features/features_with_room.h"
 #include "hybrid_quad/mesh/edge_bisection.h"
+#include "hybrid_quad/mesh/segment_index.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -141,14 +142,20 @@ void merge_double_lines(ComponentPlan& plan, double length) {
   take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length));
 }
 
+/// Half-edges of features that never give way: those that somebody marked, or wants a number of quads along.
+std::vector<char> firm_features(const ComponentPlan& plan) {
+  std::vector<char> is_firm = plan.is_given;
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_firm[h] = 1;
+  return is_firm;
+}
+
 /// Takes as few features away as make room. \returns whether any
 bool make_room(ComponentPlan& plan) {
   constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
   const double length = std::sqrt(plan.mesh.total_area() / plan.quads);
   if (crowding(plan.mesh, plan.features, plan.quads, length) <= kTooCrowded) return false;
-  std::vector<char> is_kept = plan.is_given;
-  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
-    if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_kept[h] = 1;
+  const std::vector<char> is_kept = firm_features(plan);
   std::vector<char> remains;
   for (const double gap : kGaps) {
     remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
@@ -257,6 +264,26 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
   plan_lengths(with, mirror_planes, context);
   scale_plan(with, plan.quads / with.quads);
   return with;
+}
+
+ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,
+                                  const RunContext& context) {
+  constexpr double kReach = 1.0;
+  std::vector<char> remains = firm_features(plan);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
+    if (remains[h] || !plan.features.is_feature(h)) continue;
+    const int a = plan.mesh.from(h), b = plan.mesh.to(h);
+    const double reach = kReach * std::max(plan.target[a], plan.target[b]);
+    remains[h] = plan.mesh.opposite(h) < 0 || std::none_of(places.begin(), places.end(), [&](const Vector3& p) {
+      return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < reach * reach;
+    });
+  }
+  ComponentPlan without = plan;
+  take_features_away(without, remains);
+  if (without.given_way == plan.given_way) return without;
+  plan_lengths(without, mirror_planes, context);
+  scale_plan(without, plan.quads / without.quads);
+  return without;
 }
 
 void scale_plan(ComponentPlan& plan, double quads_factor) {

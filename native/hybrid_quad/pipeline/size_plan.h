@@ -60,6 +60,9 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
 /// The plan for as many quads with more vertices as corners, where a feature passes.
 ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes, const RunContext& context);
 
+/// The plan for as many quads without the features by angle that pass within an edge of some places.
+ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes, const RunContext& context);
+
 /// The same lengths for more or fewer quads.
 void scale_plan(ComponentPlan& plan, double quads_factor);
 

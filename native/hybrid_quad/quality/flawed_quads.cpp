@@ -75,16 +75,25 @@ SurfacePoint nearest_that_agrees(const SurfaceIndex& surface, const Ball& ball, 
   return surface.nearest(ball.centre, along);
 }
 
-/// Whether a face that agrees with a normal reaches into a ball with its inside.
-bool coincides(const SurfaceIndex& surface, const Ball& ball, const Vector3& normal) {
+/// Whether a face that agrees with a normal reaches with its inside to within `distance` of the ball's centre, and faces that
+/// agree have about as much area in the ball as those that do not: two sheets in one place, not the edge of one.
+bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, const Vector3& normal) {
   constexpr double kInside = 1e-3;  // of the face's area
-  const SurfacePoint point = nearest_that_agrees(surface, ball, normal);
+  constexpr double kAsMuch = 0.5;
+  const SurfacePoint point = nearest_that_agrees(surface, {ball.centre, distance}, normal);
   if (point.face < 0) return false;
-  const std::array<Vector3, 3> p = corners_of(surface.mesh(), point.face);
+  const TriangleMesh& mesh = surface.mesh();
+  const std::array<Vector3, 3> p = corners_of(mesh, point.face);
   const double area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
   for (int i = 0; i < 3; ++i)
     if ((p[i] - point.position).cross(p[(i + 1) % 3] - point.position).norm() < kInside * area) return false;
-  return true;
+  const Vector3 reach = Vector3::Constant(ball.radius);
+  double along = 0, against = 0;
+  surface.any_in_box(ball.centre - reach, ball.centre + reach, [&](int f) {
+    (mesh.normal(f).dot(normal) < kAgrees ? against : along) += area_in_ball(corners_of(mesh, f), mesh.normal(f), ball);
+    return false;
+  });
+  return along >= kAsMuch * against;
 }
 
 /// Whether the faces in a ball that agree with a normal have that much area there, or one of them has its middle there.
@@ -135,8 +144,9 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   const SurfacePoint near = surface.nearest(centre);
   if (near.face < 0 || !points_against(surface, centre, near, normal, kTouches * size)) return false;
   const double distance = std::sqrt(near.squared_distance);
-  return !agrees_in(surface, {centre, distance + kReach * size}, normal, agreement.area) &&
-         !(agreement.or_coincides && coincides(surface, {centre, distance + kTouches * size}, normal));
+  const Ball ball{centre, distance + kReach * size};
+  return !agrees_in(surface, ball, normal, agreement.area) &&
+         !(agreement.or_coincides && coincides(surface, ball, distance + kTouches * size, normal));
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {

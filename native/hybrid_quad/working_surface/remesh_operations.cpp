@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hybrid_quad/mesh/segment_index.h"
 #include "hybrid_quad/working_surface/surface_remesher.h"
 
 namespace hybrid_quad {
@@ -25,13 +26,6 @@ double shape(const Vector3& a, const Vector3& b, const Vector3& c) { return shap
 
 double longest_side2(const Vector3& a, const Vector3& b, const Vector3& c) {
   return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-}
-
-double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b) {
-  const Vector3 e = b - a;
-  const double length2 = e.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(e) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * e).norm();
 }
 
 /// What is larger by less is as large: halves of edges and of triangles are, and rounding must not tell them apart.
@@ -79,7 +73,7 @@ bool SurfaceRemesher::may_leave_curve_vertex(int h) const {
   const double target = vertex_[a].target;
   const Vector3 &p = mesh_.position(before), &q = mesh_.position(b);
   if ((q - p).norm() > 0.95 * options_.feature_edge_limit * target) return false;
-  return vertex_[a].error + distance_to_segment(mesh_.position(a), p, q) <= kCurveError * target;
+  return vertex_[a].error + std::sqrt(nearest_on_segment(mesh_.position(a), {p, q}).squared_distance) <= kCurveError * target;
 }
 
 /// Whether no inner edge between two feature vertices comes about when from(h) goes to to(h).
