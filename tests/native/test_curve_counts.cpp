@@ -10,6 +10,7 @@
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/regular_quads/curve_coordinates.h"
 #include "hybrid_quad/spanning_parameterization/curve_counts.h"
+#include "hybrid_quad/spanning_parameterization/movable_grid.h"
 #include "hybrid_quad/spanning_parameterization/dislocations.h"
 #include "support/grid_surfaces.h"
 #include "support/meshes.h"
@@ -114,6 +115,28 @@ WorkingSurface counted_box(int seed) {
     curve.asked_count = 4 + 2 * ((static_cast<int>(c) * 5 + seed) % 3) + odd;
   }
   return surface;
+}
+
+TEST(CurveCounts, DislocationsLeaveCurvesMostOfTheirEdges) {
+  const WorkingSurface surface = test::surface_of(test::box(16), 1.0 / 6);
+  const FrameField frames = test::smooth_frames(surface, 1.0 / 6);
+  const GridMeasure measure = measure_edges(surface, frames);
+  LiftedGrid grid = lift(surface, frames, solve_periodic_field(surface, frames, PeriodicFieldOptions{}, RunContext{}), measure);
+  MovableGrid movable(surface, frames, measure, 1, grid);
+  // A row goes to and fro across an edge of the box until it may not: none of it is lost before less than two thirds are left.
+  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
+    const int axis = measure.axis[h];
+    if (axis < 0) continue;
+    const int curve = surface.features.halfedge_curve[h], before = grid.curve_count[curve];
+    IntVector2 shorter{0, 0};
+    shorter[axis] = along_sign(measure, h);
+    int taken = 0;
+    for (; taken < before && movable.may_cross(h, shorter); ++taken) movable.cross(h, shorter);
+    EXPECT_LE(before - taken, 5);
+    EXPECT_GE(before - taken, 4);
+    for (; taken > 0; --taken) movable.cross(h, minus(shorter));
+    EXPECT_EQ(grid.curve_count[curve], before);
+  }
 }
 
 TEST(CurveCounts, AreTheLiftsAndStayWhileDislocationsMove) {

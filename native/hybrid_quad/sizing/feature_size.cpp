@@ -30,7 +30,8 @@ void propagate(const TriangleMesh& mesh, std::vector<double>& value, std::vector
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (value[v] < stop) queue.emplace(value[v], v);
   while (!queue.empty()) {
-    const auto [at, v] = queue.top();
+    const double at = queue.top().first;  // no structured binding: C++17 does not let lambdas take these
+    const int v = queue.top().second;
     queue.pop();
     if (at > value[v] || mesh.outgoing(v) < 0) continue;
     const auto offer = [&](int w, double length) {

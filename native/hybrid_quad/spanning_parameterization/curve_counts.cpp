@@ -103,16 +103,15 @@ std::vector<CountRange> allowed_counts(const WorkingSurface& surface, const Grid
   constexpr double kShorter = 0.7, kLonger = 1.5;
   const TriangleMesh& mesh = surface.mesh;
   const auto& curves = surface.features.curves;
-  std::vector<CountRange> ranges;
-  for (const FeatureCurve& curve : curves) ranges.push_back({fewest_curve_edges(curve), std::numeric_limits<int>::max()});
-  if (std::none_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; })) return ranges;
+  const bool any_asked = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
   std::vector<double> length(curves.size(), 0.0);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h)) length[surface.features.halfedge_curve[h]] += measure.along[h].norm();
+  std::vector<CountRange> ranges;
   for (std::size_t c = 0; c < curves.size(); ++c) {
-    ranges[c].fewest = std::max(ranges[c].fewest, static_cast<int>(kShorter * length[c]));
-    ranges[c].most = static_cast<int>(kLonger * length[c]) + 2;
-    if (curves[c].asked_count > 0) ranges[c] = {curves[c].asked_count, curves[c].asked_count};
+    const int most = any_asked ? static_cast<int>(kLonger * length[c]) + 2 : std::numeric_limits<int>::max();
+    ranges.push_back({std::max(fewest_curve_edges(curves[c]), static_cast<int>(kShorter * length[c])), most});
+    if (curves[c].asked_count > 0) ranges.back() = {curves[c].asked_count, curves[c].asked_count};
   }
   return ranges;
 }
