@@ -15,7 +15,7 @@ import json
 import shlex
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from chord import chord_error, feature_curves
@@ -57,7 +57,11 @@ def main() -> int:
             results = [ours(path, quads), *peers(path, quads, is_cad)]
             if quads == QUADS:
                 results += [from_stored(name, result) for name, result in stored.get(path.stem, {}).items()]
-            cases.append(Case(path.stem, quads, is_cad, chords[quads], results))
+            case = Case(path.stem, quads, is_cad, chords[quads], results)
+            peer = case.best_peer()
+            if is_cad and peer is not None and peer.quads is not None:
+                case = replace(case, as_many=ours(path, peer.quads))
+            cases.append(case)
     text, good = page(cases)
     (arguments.out / "compare.md").write_text(text)
     print(text)

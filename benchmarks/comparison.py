@@ -45,6 +45,7 @@ class Case:
     is_cad: bool
     chord: float  # error of even quads' edges on curved features, in percent of the diagonal
     results: Sequence[Result]
+    as_many: Result | None = None  # this package's for as many quads as the best peer's result has
 
     @property
     def ours(self) -> Result:
@@ -228,11 +229,15 @@ def _features(cases: Sequence[Case]) -> list[Target]:
         peer = case.best_peer()
         return peer.feature if peer else None
 
-    # The stored figures have two digits.
+    def is_as_near(case: Case) -> bool:
+        # More quads have shorter chords; the stored figures have two digits.
+        ours = case.as_many if case.as_many is not None and case.as_many.is_valid else case.ours
+        return (ours.feature or 0) <= its(case) + 0.005
+
     against_peer = _share(
-        f"feature Hausdorff ≤ {BEST_PEER}'s on 80 % of the CAD models",
+        f"feature Hausdorff ≤ {BEST_PEER}'s, at the number of quads it gave, on 80 % of the CAD models",
         beside,
-        lambda c: (c.ours.feature or 0) <= its(c) + 0.005,
+        is_as_near,
         0.8,
     )
     far = [f"{c.name} ({c.ours.feature:.2f} > 1.5 × {c.chord:.2f})" for c in cad if (c.ours.feature or 0) > _most(c)]
