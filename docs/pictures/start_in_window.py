@@ -32,7 +32,6 @@ OUT = Path(sys.argv[-1]) if "--" in sys.argv[:-1] else ROOT / "docs" / "images" 
 def steps() -> Iterator[float]:
     """Panel, run, result; every number is a pause in seconds, in which Blender handles events."""
     OUT.mkdir(parents=True, exist_ok=True)
-    bpy.context.preferences.view.show_splash = False
     watch_drawing()
     for cls in panels.CLASSES[1:]:
         cls.bl_options = {"DEFAULT_CLOSED"}

@@ -8,6 +8,7 @@ import bpy
 
 from ..core import native
 from . import background_run
+from .copy_settings import OBJECT_OT_hybrid_quad_copy_settings
 from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
 from .panel_base import HybridQuadPanel, settings_layout
 from .presets import VIEW3D_PT_hybrid_quad_presets
@@ -49,7 +50,9 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
         button.scale_y = 1.5
         button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
         if sum(obj.type == "MESH" for obj in context.selected_objects) > 1:
-            layout.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
+            column = layout.column(align=True)
+            column.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
+            column.operator(OBJECT_OT_hybrid_quad_copy_settings.bl_idname)
 
 
 def _draw_run(layout: Any, context: bpy.types.Context, run: background_run.BackgroundRun) -> None:

@@ -31,12 +31,11 @@ PATIENCE = 90
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     watch_drawing()
-    for cls in (*main_panels.CLASSES[1:], *panels.CLASSES):
-        cls.bl_options = set() if cls in panels.CLASSES else {"DEFAULT_CLOSED"}
+    for cls in main_panels.CLASSES[1:]:
+        cls.bl_options = set() if cls.__module__ == panels.__name__ else {"DEFAULT_CLOSED"}
     hybrid_quad.register()
     with in_view():
         head = add_head()
@@ -148,17 +147,17 @@ def settled() -> Iterator[float]:
 
 def picture() -> Iterator[float]:
     """The middle of the 3D view as an array."""
-    window, area = view()
+    _, area = view()
     area.tag_redraw()
     yield 0.6
-    path = str(Path(bpy.app.tempdir) / "view.png")
-    with bpy.context.temp_override(window=window, area=area):
-        bpy.ops.screen.screenshot_area(filepath=path)
+    path = yield from take_picture("view.png", bpy.app.tempdir)
     image = bpy.data.images.load(path)
     width, height = image.size
     pixels = np.array(image.pixels[:], np.float32).reshape(height, width, 4)[..., :3]
     bpy.data.images.remove(image)
-    return pixels[height // 6 : -height // 6, width // 6 : width * 2 // 3]
+    inside = pixels[area.y : area.y + area.height, area.x : area.x + area.width]
+    height, width = inside.shape[:2]
+    return inside[height // 6 : -height // 6, width // 6 : width * 2 // 3]
 
 
 def changed(first: np.ndarray, second: np.ndarray) -> float:
