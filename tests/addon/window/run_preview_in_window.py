@@ -43,6 +43,10 @@ def steps() -> Iterator[float]:
     yield 0.5
     yield from show_sidebar_tab()
 
+    overlay = view()[1].spaces[0].overlay
+    overlay.show_overlays = False
+    bare = yield from picture()
+    overlay.show_overlays = True
     before = yield from picture()
     asked = bpy.context.window_manager.hybrid_quad_preview
     asked.show_field = True
@@ -66,10 +70,9 @@ def steps() -> Iterator[float]:
     yield from take_picture("8_quad_lines.png")
     expect(len(sessions.field.session.result.quads) > 1000, "the quad lines are there")
 
-    view()[1].spaces[0].overlay.show_overlays = False
-    plain = yield from picture()
-    expect(changed(before, plain) < 0.02, "without overlays nothing is drawn")
-    view()[1].spaces[0].overlay.show_overlays = True
+    overlay.show_overlays = False
+    expect(changed(bare, (yield from picture())) < 0.001, "without overlays nothing is drawn")
+    overlay.show_overlays = True
     asked.show_field = asked.show_quads = False
     asked.show_crosses = True
     expect(not drawing.is_on(), "nothing draws any more")
