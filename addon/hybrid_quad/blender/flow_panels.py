@@ -58,7 +58,7 @@ class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
         adaptivity = column.column()
         adaptivity.active = settings.target_mode != "CHORD"
         adaptivity.prop(settings, "adaptivity")
-        column.prop(settings, "field_smoothness")
+        column.prop(settings, "field_smoothness", text="Smooth")
 
 
 class VIEW3D_PT_hybrid_quad_flow_advanced(HybridQuadPanel, bpy.types.Panel):

@@ -15,6 +15,9 @@ from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
 from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
 
+# What fits left of a value in a sidebar that is as wide as Blender makes it.
+_SHORT = {"edge_length": "Length", "chord_error": "Error"}
+
 
 class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
     """Size of the quads, where they go, and the button."""
@@ -44,7 +47,8 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
         column = layout.column()
         column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length
         column.prop(settings, "target_mode")
-        column.prop(settings, SIZE_SETTINGS[settings.target_mode])
+        size = SIZE_SETTINGS[settings.target_mode]
+        column.prop(settings, size, text=_SHORT.get(size, settings.bl_rna.properties[size].name))
         layout.prop(settings, "result_mode")
         button = layout.row()
         button.scale_y = 1.5
