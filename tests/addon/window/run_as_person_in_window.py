@@ -78,8 +78,12 @@ def steps() -> Iterator[float]:
     yield from until_finished()
     result = bpy.context.view_layer.objects.active
     expect(result.name == "Spot Quads" and {len(face.vertices) for face in result.data.polygons} == {4}, "quads")
+    with in_view():
+        bpy.context.space_data.overlay.show_wireframes = True
     yield 0.5
     yield from take_picture("person_4_result.png")
+    with in_view():
+        bpy.context.space_data.overlay.show_wireframes = False
 
     yield from key("Z", ctrl=True)
     yield 0.5
