@@ -11,7 +11,7 @@ from .properties import HybridQuadSettings, HybridQuadTransferSettings
 
 
 class OBJECT_OT_hybrid_quad_copy_settings(bpy.types.Operator):
-    """Give the other selected mesh objects the active object's settings. Regions, guide objects and what is painted stay their own"""  # noqa: E501
+    """Give the other selected mesh objects the active object's settings. Regions, guide objects and what is painted stay their own"""
 
     bl_idname = "object.hybrid_quad_copy_settings"
     bl_label = "Copy Settings to Selected"
