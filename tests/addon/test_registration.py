@@ -55,6 +55,14 @@ def test_every_property_has_a_tooltip():
                 assert len(prop.description) > 10, f"{cls.__name__}.{prop.identifier}"
 
 
+def test_every_operator_has_a_tooltip_without_a_full_stop():
+    for cls in registration.CLASSES:
+        if issubclass(cls, bpy.types.Operator):
+            space, _, word = cls.bl_idname.partition(".")
+            text = getattr(getattr(bpy.ops, space), word).get_rna_type().description
+            assert len(text) > 20 and not text.endswith("."), cls.bl_idname
+
+
 @pytest.mark.parametrize("state", ["nothing is active", "Edit Mode"])
 def test_every_disabled_operator_says_why(state):
     if state == "Edit Mode":

@@ -236,7 +236,7 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
 
 def draw_remesh_button(self: Any, _context: bpy.types.Context) -> None:
     """Button below those of Blender's own remeshers, in the panel Remesh of the properties of a mesh."""
-    self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
+    self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, text="Hybrid Quad Remesh", icon="MOD_REMESH")
 
 
 def problem_of(context: bpy.types.Context, modes: Collection[str] = ("OBJECT",)) -> str:
