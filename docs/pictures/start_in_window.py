@@ -1,7 +1,7 @@
 """Takes the pictures of docs/start-in-blender.md in Blender's window, on a screen that need not be there.
 
     BLENDER_USER_SCRIPTS=$(mktemp -d) LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 1600x1000x24" \\
-        blender --factory-startup --enable-event-simulate -p 0 0 1240 860 -P docs/pictures/start_in_window.py -- [FOLDER]
+        blender --factory-startup --enable-event-simulate -p 0 0 1240 1000 -P docs/pictures/start_in_window.py -- [FOLDER]
 
 The add-on is linked into that folder of scripts, as an installed one would lie there. Ends Blender with status 0 or 1.
 """
@@ -9,6 +9,7 @@ The add-on is linked into that folder of scripts, as an installed one would lie 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -21,10 +22,11 @@ from mathutils import Quaternion
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / "lib"), str(ROOT / "tests" / "addon" / "window")]
 
-from run_in_window import expect, in_view, main, show_sidebar_tab, until_finished, view, watch_drawing  # noqa: E402
+from run_in_window import expect, in_view, main, show_sidebar_tab, until_finished, view, watched  # noqa: E402
 from stage import save_side_by_side  # noqa: E402
 
-from hybrid_quad.blender import background_run, panels  # noqa: E402
+from hybrid_quad.blender import background_run  # noqa: E402
+from hybrid_quad.blender.main_panel import VIEW3D_PT_hybrid_quad  # noqa: E402
 
 OUT = Path(sys.argv[-1]) if "--" in sys.argv[:-1] else ROOT / "docs" / "images" / "start"
 
@@ -32,11 +34,7 @@ OUT = Path(sys.argv[-1]) if "--" in sys.argv[:-1] else ROOT / "docs" / "images" 
 def steps() -> Iterator[float]:
     """Panel, run, result; every number is a pause in seconds, in which Blender handles events."""
     OUT.mkdir(parents=True, exist_ok=True)
-    bpy.context.preferences.view.show_splash = False
-    watch_drawing()
-    for cls in panels.CLASSES[1:]:
-        cls.bl_options = {"DEFAULT_CLOSED"}
-    panels.VIEW3D_PT_hybrid_quad_report.bl_options = set()
+    VIEW3D_PT_hybrid_quad.draw = watched(VIEW3D_PT_hybrid_quad.draw, VIEW3D_PT_hybrid_quad.__name__)
     bpy.ops.wm.open_mainfile(filepath=str(ROOT / "blend_samples" / "sculpted_head.blend"), load_ui=False)
     yield 1.0
     yield from show_installed()
@@ -53,9 +51,12 @@ def steps() -> Iterator[float]:
     yield from take_panel_picture("target.png")
     with in_view():
         bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT")
-    while background_run.current().fraction < 0.3:
-        yield 0.05
+    run = background_run.current()
+    while run.fraction < 0.3:
+        yield 0.02
+    os.kill(run.worker.process_id, signal.SIGSTOP)  # a picture takes longer than many a stage
     yield from take_picture("running.png")
+    os.kill(run.worker.process_id, signal.SIGCONT)
     yield from until_finished()
     expect(bpy.context.view_layer.objects.active != head, "the result is there")
     yield 1.0
@@ -76,7 +77,7 @@ def show_installed() -> Iterator[float]:
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Hybrid Quad"
     yield 1.0
-    yield from take_picture("install.png", area, (0.0, 0.84, 1.0, 1.0))
+    yield from take_picture("install.png", area, (0.0, 0.865, 1.0, 1.0))
     area.type = "VIEW_3D"
     yield 1.0
 
@@ -88,7 +89,7 @@ def take_panel_picture(name: str) -> Iterator[float]:
     area = view()[1]
     region = next(region for region in area.regions if region.type == "UI")
     left, right = (region.x - area.x) / area.width, (region.x - area.x + region.width) / area.width
-    yield from take_picture(name, area, (left, 0.73, right, 0.93))
+    yield from take_picture(name, area, (left, 0.77, right, 0.94))
     settings.target_mode = "COUNT"
 
 

@@ -139,3 +139,17 @@ def test_a_border_without_another_side_is_none():
         loop.uv = (0, 0)
     _only(obj.hybrid_quad, "use_uv_borders", "use_material_borders")
     assert len(prepare_task(obj, bpy.context.evaluated_depsgraph_get()).marked_edges) == 0
+
+
+def test_edges_at_which_custom_normals_break_are_marked_and_kept():
+    obj = add_grid()
+    obj.data.polygons.foreach_set("use_smooth", [True] * len(obj.data.polygons))
+    left = _left(obj)
+    normals = np.empty((len(obj.data.loops), 3))
+    for polygon in obj.data.polygons:
+        normals[list(polygon.loop_indices)] = (-0.6, 0, 0.8) if left[polygon.index] else (0.6, 0, 0.8)
+    obj.data.normals_split_custom_set(normals.tolist())
+    _only(obj.hybrid_quad, "use_marked_sharp")
+    task = prepare_task(obj, bpy.context.evaluated_depsgraph_get())
+    assert len(task.marked_edges) == 12
+    assert np.abs(task.source.vertices[task.marked_edges][..., 0] - LINE).max() < 1e-6

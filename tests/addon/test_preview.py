@@ -13,7 +13,7 @@ from hybrid_quad.blender import result_features
 from hybrid_quad.blender.preview import drawing, sessions
 from scenes import activate, add_cube, add_grid, add_sphere, points_of, remesh
 
-PATIENCE = 15  # seconds until a test gives up waiting
+PATIENCE = 60  # seconds until a test gives up waiting
 
 
 def show(**switches: bool) -> None:
@@ -103,6 +103,18 @@ def test_a_change_of_settings_or_mesh_is_followed_and_other_objects_are_not():
     activate(cube)
     settle()
     assert sessions.field.session.target() == cube and len(sessions.field.session.result.features) > 0
+
+
+def test_views_are_drawn_anew_for_results_and_not_for_news(monkeypatch):
+    obj = add_sphere()
+    show(show_field=True)
+    settle()
+    told, views = [], []
+    monkeypatch.setattr(sessions, "redraw_sidebars", lambda: told.append(sessions.field.session.status))
+    monkeypatch.setattr(sessions, "redraw", lambda: views.append(sessions.field.session.result))
+    obj.hybrid_quad.quads += 100
+    settle()
+    assert views == [sessions.field.session.result] and told
 
 
 def test_sculpt_mode_is_followed_and_edit_mode_when_it_is_left():

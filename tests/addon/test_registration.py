@@ -19,7 +19,7 @@ def _traces() -> list[str]:
     names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
     names += ["drawing"] * len(stroke_view._handles)
     names += [f.__name__ for f in bpy.app.handlers.load_post if "hybrid_quad" in f.__module__]
-    for owner in (bpy.types.VIEW3D_MT_object, panels.VIEW3D_PT_hybrid_quad_guides):
+    for owner in (bpy.types.VIEW3D_MT_object, bpy.types.DATA_PT_remesh, panels.VIEW3D_PT_hybrid_quad_guides):
         added = getattr(owner.draw, "_draw_funcs", [])
         names += [f.__name__ for f in added if "hybrid_quad" in f.__module__ and f.__name__ != "draw"]
     names += [name for name in dir(bpy.ops.object) if "hybrid_quad" in name] + dir(bpy.ops.hybrid_quad)
@@ -53,6 +53,14 @@ def test_every_property_has_a_tooltip():
         for prop in cls.bl_rna.properties:
             if prop.identifier in getattr(cls, "__annotations__", {}):
                 assert len(prop.description) > 10, f"{cls.__name__}.{prop.identifier}"
+
+
+def test_every_operator_has_a_tooltip_without_a_full_stop():
+    for cls in registration.CLASSES:
+        if issubclass(cls, bpy.types.Operator):
+            space, _, word = cls.bl_idname.partition(".")
+            text = getattr(getattr(bpy.ops, space), word).get_rna_type().description
+            assert len(text) > 20 and not text.endswith("."), cls.bl_idname
 
 
 @pytest.mark.parametrize("state", ["nothing is active", "Edit Mode"])

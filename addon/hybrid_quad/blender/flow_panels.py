@@ -50,7 +50,6 @@ class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
 
     bl_label = "Flow"
     bl_parent_id = "VIEW3D_PT_hybrid_quad"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = settings_layout(self)
@@ -59,9 +58,22 @@ class VIEW3D_PT_hybrid_quad_flow(HybridQuadPanel, bpy.types.Panel):
         adaptivity = column.column()
         adaptivity.active = settings.target_mode != "CHORD"
         adaptivity.prop(settings, "adaptivity")
-        column.prop(settings, "narrow_quads")
-        column.prop(settings, "field_smoothness")
+        column.prop(settings, "field_smoothness", text="Smooth")
+
+
+class VIEW3D_PT_hybrid_quad_flow_advanced(HybridQuadPanel, bpy.types.Panel):
+    """What few models need."""
+
+    bl_label = "Advanced"
+    bl_parent_id = "VIEW3D_PT_hybrid_quad_flow"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = settings_layout(self)
+        settings = context.object.hybrid_quad
+        column = layout.column()
         column.prop(settings, "anisotropy")
+        column.prop(settings, "narrow_quads")
         column.prop(settings, "fit_limit_surface")
 
 
@@ -74,9 +86,8 @@ class VIEW3D_PT_hybrid_quad_symmetry(HybridQuadPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = settings_layout(self)
         settings = context.object.hybrid_quad
-        row = layout.row(heading="Mirror", align=True)
-        axes = row.row(align=True)
+        axes = layout.row(heading="Mirror", align=True)
         axes.active = not settings.use_auto_symmetry
         for index, letter in enumerate("XYZ"):
             axes.prop(settings, "symmetry_axes", index=index, text=letter, toggle=True)
-        row.prop(settings, "use_auto_symmetry", toggle=True)
+        layout.prop(settings, "use_auto_symmetry")

@@ -8,11 +8,15 @@ import bpy
 
 from ..core import native
 from . import background_run
+from .copy_settings import OBJECT_OT_hybrid_quad_copy_settings
 from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
 from .panel_base import HybridQuadPanel, settings_layout
 from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
 from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
+
+# What fits left of a value in a sidebar that is as wide as Blender makes it.
+_SHORT = {"edge_length": "Length", "chord_error": "Error"}
 
 
 class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
@@ -43,13 +47,16 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
         column = layout.column()
         column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length
         column.prop(settings, "target_mode")
-        column.prop(settings, SIZE_SETTINGS[settings.target_mode])
+        size = SIZE_SETTINGS[settings.target_mode]
+        column.prop(settings, size, text=_SHORT.get(size, settings.bl_rna.properties[size].name))
         layout.prop(settings, "result_mode")
         button = layout.row()
         button.scale_y = 1.5
         button.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, icon="MOD_REMESH")
         if sum(obj.type == "MESH" for obj in context.selected_objects) > 1:
-            layout.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
+            column = layout.column(align=True)
+            column.operator(OBJECT_OT_hybrid_quad_remesh_selected.bl_idname)
+            column.operator(OBJECT_OT_hybrid_quad_copy_settings.bl_idname)
 
 
 def _draw_run(layout: Any, context: bpy.types.Context, run: background_run.BackgroundRun) -> None:

@@ -234,6 +234,11 @@ def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:
     self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname)
 
 
+def draw_remesh_button(self: Any, _context: bpy.types.Context) -> None:
+    """Button below those of Blender's own remeshers, in the panel Remesh of the properties of a mesh."""
+    self.layout.operator(OBJECT_OT_hybrid_quad_remesh.bl_idname, text="Hybrid Quad Remesh", icon="MOD_REMESH")
+
+
 def problem_of(context: bpy.types.Context, modes: Collection[str] = ("OBJECT",)) -> str:
     """Why the active object cannot be worked on now; empty where it can, if it is in one of some modes."""
     return object_problem(context.object, modes)

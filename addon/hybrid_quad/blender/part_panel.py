@@ -35,6 +35,3 @@ class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
         column = layout.column()
         column.prop(settings, "use_border_length")
         column.prop(settings, "odd_border", text="If Odd")
-
-
-CLASSES = (VIEW3D_PT_hybrid_quad_part,)

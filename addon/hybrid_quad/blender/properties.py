@@ -123,7 +123,8 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     use_marked_sharp: bpy.props.BoolProperty(
         name="Marked Sharp",
-        description="Keep edges that are marked sharp (Edge > Mark Sharp), whatever their angle",
+        description="Keep edges that are marked sharp (Edge > Mark Sharp), whatever their angle. Edges at which custom normals "
+        "break are, too",
         default=True,
     )
     use_seams: bpy.props.BoolProperty(

@@ -15,9 +15,9 @@ from . import (
     background_run,
     check_operators,
     command,
+    copy_settings,
     operators,
     panels,
-    part_panel,
     part_pick,
     presets,
     properties,
@@ -27,7 +27,6 @@ from . import (
 )
 from .painting import registration as painting
 from .preview import limit, sessions
-from .preview import panels as preview_panels
 from .preview import settings as preview_settings
 
 CLASSES = (
@@ -38,18 +37,19 @@ CLASSES = (
     *check_operators.CLASSES,
     *repair_operators.CLASSES,
     *presets.CLASSES,
+    *copy_settings.CLASSES,
     *part_pick.CLASSES,
     *limit.CLASSES,
-    # Panels stand in the order in which they come here.
-    *panels.CLASSES[:1],
-    *preview_panels.CLASSES[:1],
-    *part_panel.CLASSES,
-    *panels.CLASSES[1:],
-    *preview_panels.CLASSES[1:],
     *painting.CLASSES,
+    # Panels stand in the order in which they come here.
+    *panels.CLASSES,
 )
-# Of the menu Object, in this order.
-MENU_ENTRIES = (operators.draw_menu_entry, selected_objects.draw_menu_entry)
+# What is added to Blender's own menus and panels, in this order.
+ENTRIES = (
+    ("VIEW3D_MT_object", operators.draw_menu_entry),
+    ("VIEW3D_MT_object", selected_objects.draw_menu_entry),
+    ("DATA_PT_remesh", operators.draw_remesh_button),
+)
 
 
 def register() -> None:
@@ -66,8 +66,8 @@ def register() -> None:
     sessions.register()
     run_display.register()
     painting.register()
-    for entry in MENU_ENTRIES:
-        bpy.types.VIEW3D_MT_object.append(entry)
+    for owner, entry in ENTRIES:
+        getattr(bpy.types, owner).append(entry)
     command.register()
 
 
@@ -78,8 +78,8 @@ def unregister() -> None:
     sessions.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
-    for entry in MENU_ENTRIES:
-        bpy.types.VIEW3D_MT_object.remove(entry)
+    for owner, entry in ENTRIES:
+        getattr(bpy.types, owner).remove(entry)
     if hasattr(bpy.types.Object, "hybrid_quad"):
         del bpy.types.Object.hybrid_quad
     if hasattr(bpy.types.WindowManager, "hybrid_quad_preview"):

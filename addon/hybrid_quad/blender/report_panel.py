@@ -43,8 +43,8 @@ def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:
     return [
         ("Quads", f"{report.get('quads', 0):,}"),
         ("Irregular vertices", f"{report.get('irregular_vertices', 0):,}"),
-        ("Scaled Jacobian, mean", _number(quality.get("mean"))),
-        ("Scaled Jacobian, worst", _number(quality.get("min"))),
+        ("Quad shape, mean", _number(quality.get("mean"))),
+        ("Quad shape, worst", _number(quality.get("min"))),
         ("Largest distance", f"{_number(report.get('hausdorff_percent'))} %"),
         *_symmetry_rows(report.get("symmetry", {})),
         ("Time", f"{sum(stage.get('seconds', 0.0) for stage in report.get('stages', ())):.1f} s"),

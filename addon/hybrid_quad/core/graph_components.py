@@ -24,12 +24,19 @@ def component_labels(count: int, first: Indices, second: Indices) -> Indices:
     """
     label = np.arange(count, dtype=np.int64)
     while True:
-        least = np.minimum(label[first], label[second])
-        updated = label.copy()
-        # The labels themselves are hooked on as well: the number of rounds is logarithmic.
-        for nodes in (first, second, label[first], label[second]):
-            np.minimum.at(updated, nodes, least)
-        updated = updated[updated]
-        if np.array_equal(updated, label):
+        low, high = np.minimum(first, second), np.maximum(first, second)
+        apart = low < high
+        if not apart.any():
             return label
-        label = updated
+        # Every root goes to the least of those next to it that are less; sorted, that is the first of its own.
+        keys = np.sort(high[apart] * np.int64(count) + low[apart])
+        root, least = keys // count, keys % count
+        is_first = np.append(True, root[1:] != root[:-1])
+        label[root[is_first]] = least[is_first]
+        while True:
+            above = label[label]
+            if np.array_equal(above, label):
+                break
+            label = above
+        # On with the graph of the roots, which soon is small.
+        first, second = label[root], label[least]

@@ -104,10 +104,14 @@ class SurfaceWalk:
         alike = (points[vertices[side]] == points[vertices[other]]).all(axis=1)
         at_begin = np.where(alike, other, next_other)
         at_end = np.where(alike, next_other, other)
-        gap = np.abs(values[corners[side]] - values[corners[at_begin]]).max(axis=1)
-        gap = np.maximum(gap, np.abs(values[corners[next_side]] - values[corners[at_end]]).max(axis=1))
+        here, there = corners[side], corners[at_begin]
+        next_here, next_there = corners[next_side], corners[at_end]
+        differ = np.zeros(len(side), np.bool_)
+        for column in values.T:  # several times as fast as all at once
+            differ |= np.abs(column[here] - column[there]) > tolerance
+            differ |= np.abs(column[next_here] - column[next_there]) > tolerance
         result: BoolArray = self._is_crowded.copy()
-        result[side] |= gap > tolerance
+        result[side] |= differ
         return result.reshape(-1, 3)
 
     def wall_edges(self, walls: BoolArray) -> Indices:

@@ -12,7 +12,7 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
@@ -32,7 +32,6 @@ drawn: set[str] = set()
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     watch_drawing()
@@ -176,30 +175,35 @@ def until_finished() -> Iterator[float]:
     yield 0.3
 
 
-def take_picture(name: str) -> Iterator[float]:
-    """Of the window, into FOLDER. Blender 4 and newer take black ones from here, so there somebody else is asked.
+def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
+    """Of the window, into FOLDER, or another where there is none. Gives its path, or an empty text where neither is known.
 
-    That is the program that watches FOLDER for files NAME.wanted, and removes them when NAME is there.
+    Blender 4 and newer take black ones from here, so there somebody else is asked: the program that watches FOLDER for
+    files NAME.wanted, and removes them when NAME is there.
     """
-    if not PICTURES:
-        return
-    path = Path(PICTURES[0]).resolve() / name
+    if PICTURES:
+        folder = PICTURES[0]
+    if not folder:
+        return ""
+    path = Path(folder).resolve() / name
     if bpy.app.version < (4, 0):
         window, area = view()
         with bpy.context.temp_override(window=window, area=area):
             bpy.ops.screen.screenshot(filepath=str(path))
         yield 0.3
-        return
+        return str(path)
     wanted = path.with_name(f"{name}.wanted")
     wanted.touch()
     for _ in range(100):
         if not wanted.exists():
-            break
+            return str(path)
         yield 0.2
+    raise AssertionError(f"nobody takes pictures for {path.parent}")
 
 
 def main(test: Iterator[float]) -> None:
     """Steps through a test, and ends Blender with status 0 or 1."""
+    bpy.context.preferences.view.show_splash = False  # now: later it is on the screen already
 
     def tick() -> float:
         try:

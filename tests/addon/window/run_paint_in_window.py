@@ -39,7 +39,6 @@ NEAR = 0.06  # edges as near as this to the stroke are to follow it
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     hybrid_quad.register()

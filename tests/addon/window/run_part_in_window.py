@@ -21,7 +21,7 @@ from run_in_window import drawn, expect, in_view, main, press, show_sidebar_tab,
 from run_worker_in_window import expect_said, said
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, panels, part_panel
+from hybrid_quad.blender import background_run, panels
 from scenes import activate, add_grid, add_sphere
 
 CELLS, FACES = 16, 256
@@ -29,9 +29,9 @@ CELLS, FACES = 16, 256
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
-    for cls in (*panels.CLASSES, *part_panel.CLASSES):
-        cls.bl_options = set() if cls in (panels.VIEW3D_PT_hybrid_quad, *part_panel.CLASSES) else {"DEFAULT_CLOSED"}
+    for cls in panels.CLASSES:
+        is_open = cls in (panels.VIEW3D_PT_hybrid_quad, panels.VIEW3D_PT_hybrid_quad_part)
+        cls.bl_options = set() if is_open else {"DEFAULT_CLOSED"}
         cls.draw = watched(cls.draw, cls.__name__)
     hybrid_quad.register()
     yield from new_scene()

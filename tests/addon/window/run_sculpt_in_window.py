@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, panels, part_panel
+from hybrid_quad.blender import background_run, panels
 from hybrid_quad.blender.part_source import knows_face_sets
 from scenes import activate, points_of
 
@@ -32,9 +32,9 @@ BOX = 90  # pixels from the view's middle to the sides of what is masked
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
-    for cls in (*panels.CLASSES, *part_panel.CLASSES):
-        cls.bl_options = set() if cls in (panels.VIEW3D_PT_hybrid_quad, *part_panel.CLASSES) else {"DEFAULT_CLOSED"}
+    for cls in panels.CLASSES:
+        is_open = cls in (panels.VIEW3D_PT_hybrid_quad, panels.VIEW3D_PT_hybrid_quad_part)
+        cls.bl_options = set() if is_open else {"DEFAULT_CLOSED"}
     hybrid_quad.register()
     press("ESC")  # the splash screen
     view()[1].spaces[0].overlay.show_wireframes = True

@@ -32,7 +32,6 @@ CANCEL_BUTTON = 119  # pixels from the top of the sidebar down to its middle
 
 def steps() -> Iterator[float]:
     """The test; every number is a pause in seconds, in which Blender handles events."""
-    bpy.context.preferences.view.show_splash = False
     hybrid_quad.register()
     yield from new_scene()
     yield from show_sidebar_tab()

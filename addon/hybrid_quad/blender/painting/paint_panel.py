@@ -57,6 +57,3 @@ def _state_of(obj: bpy.types.Object, kind: str) -> str:
         return "painted" if stored_values.is_there(obj.data, kind) else "none"
     except stored_values.WrongAttributeError:
         return "another attribute has its name"
-
-
-CLASSES = (VIEW3D_PT_hybrid_quad_painting,)

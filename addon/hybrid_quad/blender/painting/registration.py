@@ -21,7 +21,6 @@ CLASSES = (
     *brush_settings.CLASSES,
     *paint_operator.CLASSES,
     *density_operator.CLASSES,
-    *paint_panel.CLASSES,
 )
 
 

@@ -42,7 +42,7 @@ class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
         rows = layout.column(align=True)
         for quarters, count in sessions.field.counts():
             icon = "SPHERE" if quarters > 0 else "CUBE"
-            rows.label(text=f"{count:,} x {quarters:+d}/4: {4 - quarters} quads", icon=icon)
+            rows.label(text=f"{count:,} where {4 - quarters} quads meet", icon=icon)
         if not len(found.singular_quarters):
             rows.label(text="No singularities", icon="CHECKMARK")
         rows.label(text=f"About {found.report['wanted_quads']:,.0f} quads")
@@ -93,11 +93,16 @@ def _draw_distance(layout: Any) -> None:
         return
     rows = layout.column(align=True)
     for name, value in (
-        ("Largest (red)", f"{distance.largest:.4g}"),
+        ("Largest (red)", _length(distance.largest)),
         ("Of the diagonal", f"{distance.percent:.3f} %"),
-        ("Mean", f"{distance.mean:.4g}"),
+        ("Mean", _length(distance.mean)),
     ):
         draw_figure(rows, name, value)
 
 
-CLASSES = (VIEW3D_PT_hybrid_quad_preview, VIEW3D_PT_hybrid_quad_limit)
+def _length(value: float) -> str:
+    """A length of the scene in the units that it is shown in."""
+    units = bpy.context.scene.unit_settings
+    if units.system == "NONE":
+        return f"{value:.4g}"
+    return str(bpy.utils.units.to_string(units.system, "LENGTH", value * units.scale_length, precision=5))

@@ -82,8 +82,8 @@ class Session(Generic[Result]):
         """Has everything computed anew when nothing has changed for a moment."""
         self._changed_at = time.monotonic()
 
-    def step(self, *, at_once: bool = False) -> bool:
-        """Looks for changes and results, and starts what is due; whether something is to be drawn anew.
+    def step(self, *, at_once: bool = False) -> None:
+        """Looks for changes and results, and starts what is due.
 
         Parameters
         ----------
@@ -92,9 +92,8 @@ class Session(Generic[Result]):
         """
         obj = bpy.context.view_layer.objects.active
         if obj is None or obj.type != "MESH":
-            had_any = self._object is not None
             self.clear()
-            return had_any
+            return
         if identity(obj) != self._object:
             self._forget()
             self._object = identity(obj)
@@ -106,8 +105,8 @@ class Session(Generic[Result]):
         is_calm = self._changed_at is not None and (at_once or time.monotonic() - self._changed_at > _CALM)
         if is_calm and obj.mode in _MODES:
             self._begin(obj)
-            return True
-        return self._look(obj)
+        else:
+            self._look(obj)
 
     def clear(self) -> None:
         """Ends every process and forgets all."""
@@ -137,9 +136,9 @@ class Session(Generic[Result]):
             seat = None
         self._worker = WorkerRun(self._waiting.pop(0), seat=seat or _new_seat())
 
-    def _look(self, obj: bpy.types.Object) -> bool:
+    def _look(self, obj: bpy.types.Object) -> None:
         if self._worker is None or not self._worker.poll():
-            return False
+            return
         worker, self._worker = self._worker, None
         try:
             self.result = worker.result()
@@ -151,7 +150,6 @@ class Session(Generic[Result]):
                 self._seat = self._seat or _new_seat()
         except Exception as error:
             self._fail(error)
-        return True
 
     def _fail(self, error: Exception) -> None:
         self._waiting.clear()

@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
+from ..run_display import redraw_sidebars
 from . import drawing
 from .drawing import Drawing
 from .field import FieldPreview
@@ -59,15 +60,22 @@ def stop() -> None:
     redraw()
 
 
-def step(*, at_once: bool = False) -> bool:
-    """Looks once at what is shown; whether something is to be drawn anew."""
+def step(*, at_once: bool = False) -> None:
+    """Looks once at what is shown, and has drawn anew what has changed.
+
+    Views are drawn for other shapes only: a view of a large mesh takes the time that the worker needs.
+    """
     asked = settings()
-    changed = False
     for preview, is_shown in ((field, asked.show_field), (limit, asked.show_limit)):
-        if is_shown:
-            was_busy = preview.session.status
-            changed |= preview.session.step(at_once=at_once) or preview.session.status != was_busy
-    return changed
+        if not is_shown:
+            continue
+        session = preview.session
+        result, told = session.result, (session.status, session.error)
+        session.step(at_once=at_once)
+        if session.result is not result:
+            redraw()
+        elif (session.status, session.error) != told:
+            redraw_sidebars()
 
 
 def redraw() -> None:
@@ -93,8 +101,7 @@ def unregister() -> None:
 
 
 def _tick() -> float | None:
-    if step():
-        redraw()
+    step()
     return _SECONDS_BUSY if field.session.is_busy or limit.session.is_busy else _SECONDS
 
 
