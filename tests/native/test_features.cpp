@@ -158,6 +158,21 @@ TEST(Features, ASmallClearLoopStaysWhereNoiseGoes) {
   EXPECT_EQ(regions(detect(with_noise(step, 0.05, 5), options)), regions(detect(step, options)));
 }
 
+TEST(Features, ClearRingsNeedTwoThirdsOfTheLengthOfOthers) {
+  const TriangleMesh m = test::capped_cylinder(24, 12);
+  const double around = 2 * 3.14159265358979323846;
+  const auto curves = [&](const TriangleMesh& mesh, double share) {
+    FeatureOptions options;
+    options.minimum_length = around / share;
+    return detect(mesh, options).curves.size();
+  };
+  EXPECT_EQ(curves(m, 0.7), 2u);
+  EXPECT_EQ(curves(m, 0.6), 0u);
+  FeatureOptions options;
+  options.minimum_length = 12 / 0.7;
+  EXPECT_TRUE(detect(test::box(3), options).curves.empty()) << "these meet in threes";
+}
+
 TEST(Features, FoldsThatFenceInLessThanAQuadAreNone) {
   // A field of cells of length 1; quads of length 3. In its middle every other vertex is raised: each triangle there is its own facet.
   const TriangleMesh grid = test::flat_grid(30, 30, 30, 30);

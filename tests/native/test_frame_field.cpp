@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
+#include "hybrid_quad/frame_field/acute_tips.h"
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
 #include "hybrid_quad/frame_field/smooth_connection.h"
@@ -215,6 +217,52 @@ TEST(SmoothConnection, TurnsMoveCurvatureToWhereThereIsLess) {
   // An even sphere's curvature is as even as it can be.
   const WorkingSurface sphere = surface_of(test::icosphere(4), 0.3, 200);
   for (const double turn : turns_for_average_curvature(sphere, FaceAngles(sphere.mesh), 1)) EXPECT_LT(std::abs(turn), 0.005);
+}
+
+/// A flat triangle with a right angle and legs 1 and tan(degrees); vertex 0 is the tip, the last one the other tip.
+TriangleMesh right_triangle(int n, double degrees) {
+  const double rise = std::tan(degrees * 3.14159265358979323846 / 180);
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> faces;
+  const auto at = [](int i, int j) { return i * (i + 1) / 2 + j; };
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= i; ++j) positions.emplace_back(double(i) / n, rise * j / n, 0);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      if (j < i) faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return {positions, faces};
+}
+
+TEST(FrameField, OneQuadBeginsAtATipOfHalfARightAngle) {
+  for (const double length : {0.02, 0.03, 0.05, 0.1}) {
+    const WorkingSurface surface = surface_of(right_triangle(60, 45), length, 40);
+    const FrameField field = solved(surface);
+    EXPECT_TRUE(violations_of(field, surface).empty());
+    const FaceAngles angles(surface.mesh);
+    const std::vector<double> directions = frame_directions(surface.mesh, field.du, field.dv);
+    EXPECT_EQ(quarters_at(surface.mesh, angles, directions, 0), 1) << length;
+    EXPECT_EQ(quarters_at(surface.mesh, angles, directions, surface.mesh.vertex_count() - 1), 1) << length;
+    EXPECT_EQ(index_sum(field), 1) << length << ": three corners of one quad each leave one quarter inside";
+  }
+}
+
+TEST(AcuteTips, OnlyLongTipsOfSomeWidthAreOpened) {
+  const auto opening = [](double degrees, double length) {
+    const WorkingSurface surface = surface_of(right_triangle(40, degrees), length, 40);
+    const FaceAngles angles(surface.mesh);
+    const std::vector<double> turns = turns_that_open_tips(surface, angles);
+    double around = 0;  // the tip, from one side to the other
+    for (int h = surface.mesh.outgoing(0); !surface.mesh.is_boundary(TriangleMesh::previous(h)); h = surface.mesh.rotate_ccw(h))
+      around += turns[TriangleMesh::previous(h)];
+    for (int h = 0; h < surface.mesh.halfedge_count(); ++h)
+      if (!surface.mesh.is_boundary(h)) EXPECT_EQ(turns[h], -turns[surface.mesh.opposite(h)]);
+    return std::make_pair(around, *std::max_element(turns.begin(), turns.end()));
+  };
+  EXPECT_GT(opening(30, 0.05).second, 0.01);
+  EXPECT_EQ(opening(30, 0.3).second, 0) << "a side of three quads";
+  EXPECT_EQ(opening(15, 0.02).second, 0);
 }
 
 TEST(FrameField, StrongConesAreSplit) {

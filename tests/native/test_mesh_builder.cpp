@@ -175,16 +175,42 @@ TEST(MeshBuilder, WeldsLooseTriangles) {
   EXPECT_EQ(boundary_edges(built.mesh), 0);
 }
 
-TEST(MeshBuilder, KeepsClosedBodiesApartThatLieOnEachOther) {
-  PolygonSoup soup = test::soup_of(test::box(2));
+/// Both, each with vertices of its own; the second one moved, and with its back to the front.
+PolygonSoup with_inverted_copy(PolygonSoup soup, const Vector3& shift = Vector3::Zero()) {
   const PolygonSoup copy = soup;
   const int n = static_cast<int>(copy.positions.size());
-  soup.positions.insert(soup.positions.end(), copy.positions.begin(), copy.positions.end());
+  for (const Vector3& p : copy.positions) soup.positions.push_back(p + shift);
   for (std::size_t f = 0; f < copy.face_sizes.size(); ++f)
     add_face(soup, {n + copy.face_vertices[3 * f], n + copy.face_vertices[3 * f + 2], n + copy.face_vertices[3 * f + 1]});
-  const BuiltMesh built = build_mesh(soup);
+  return soup;
+}
+
+TEST(MeshBuilder, LeavesOutAPartThatLiesOnAnother) {
+  PolygonSoup inward = test::soup_of(test::box(2));
+  for (int f = 0; f < static_cast<int>(inward.face_sizes.size()); ++f) flip_face(inward, f);
+  for (const PolygonSoup& box : {test::soup_of(test::box(2)), inward}) {
+    const BuiltMesh built = build_mesh(with_inverted_copy(box));
+    EXPECT_EQ(built.mesh.euler_characteristic(), 2);
+    EXPECT_NEAR(signed_volume(built.mesh), 1, 1e-12) << "that which faces outwards stays";
+    ASSERT_TRUE(has_defect(built.defects, "duplicate_face"));
+    EXPECT_EQ(built.defects.front().elements.size(), box.face_sizes.size());
+  }
+  // A sheet with a back to every face is open still, however its file came to be.
+  const PolygonSoup sheet = test::soup_of(test::flat_grid(4, 4));
+  for (const PolygonSoup& card : {with_inverted_copy(sheet), loose(with_inverted_copy(sheet))}) {
+    const BuiltMesh built = build_mesh(card);
+    EXPECT_EQ(built.mesh.euler_characteristic(), 1);
+    EXPECT_NEAR(built.mesh.total_area(), 1, 1e-12);
+    EXPECT_EQ(boundary_edges(built.mesh), 16);
+  }
+}
+
+TEST(MeshBuilder, KeepsClosedBodiesApartThatLieOnEachOtherInPart) {
+  const PolygonSoup box = test::soup_of(test::box(2));
+  const BuiltMesh built = build_mesh(with_inverted_copy(box, Vector3(1, 0, 0)));
   EXPECT_EQ(built.mesh.euler_characteristic(), 4);
   EXPECT_EQ(boundary_edges(built.mesh), 0);
+  EXPECT_FALSE(has_defect(built.defects, "duplicate_face"));
 }
 
 TEST(MeshBuilder, DropsCopiesAndRepeatedCorners) {

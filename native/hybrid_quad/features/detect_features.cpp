@@ -21,6 +21,8 @@ constexpr double kSideShare = 1.0 / 6;    ///< how far the sides of a crease are
 constexpr double kNoClarity = 0.65, kFullClarity = 0.85;  ///< below, an edge says nothing for its set; above, its whole length
 constexpr double kNoiseFactor = 4;        ///< where all else is noise, a set must be this much longer again
 constexpr double kDoubt = 8;              ///< no set is trusted of which this part (1 / kDoubt) or more is unclear
+constexpr double kSureRing = 0.9;         ///< closed curves of which this part is clear, as the rims of holes,
+constexpr double kRingShare = 2.0 / 3;    ///< need only this part of the minimum length
 constexpr double kReachShare = 0.28;      ///< least reach of a set, of the minimum length: nearly that of a circle that long
 
 class FeatureDetector {
@@ -261,13 +263,17 @@ void FeatureDetector::drop_short_sets() {
   std::vector<char> has_given(mesh_.vertex_count(), 0);
   for (int h = 0; h < mesh_.halfedge_count(); ++h)
     if (marked_[h] || mesh_.is_boundary(h)) has_given[set_of[mesh_.from(h)]] = 1;
+  std::vector<char> is_ring(mesh_.vertex_count(), 1);
+  for (int v = 0; v < mesh_.vertex_count(); ++v)
+    if (const int degree = mesh_.outgoing(v) < 0 ? 0 : feature_degree(v); degree > 0 && degree != 2) is_ring[set_of[v]] = 0;
   const double least = options_.minimum_length;
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
     if (!by_angle_[h]) continue;
     const int s = set_of[mesh_.from(h)];
     const double doubt = std::clamp(kDoubt * (1 - clear_length[s] / set_length[s]), noise_share_ * noise_share_, 1.0);
-    const bool is_short = clear_length[s] < least * (1 + kNoiseFactor * noise_share_ * doubt);
-    const bool is_clump = !has_given[s] && reach[s] < kReachShare * least;
+    const double enough = is_ring[s] && clear_length[s] > kSureRing * set_length[s] ? kRingShare * least : least;
+    const bool is_short = clear_length[s] < enough * (1 + kNoiseFactor * noise_share_ * doubt);
+    const bool is_clump = !has_given[s] && reach[s] < kReachShare * enough;
     if (is_short || is_clump) by_angle_[h] = 0;
   }
 }

@@ -4,14 +4,15 @@
 #include <cstdlib>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/frame_field/acute_tips.h"
 #include "hybrid_quad/frame_field/cross_diffusion.h"
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 #include "hybrid_quad/frame_field/frame_field.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
+#include "hybrid_quad/frame_field/move_cones.h"
 #include "hybrid_quad/frame_field/smooth_connection.h"
 #include "hybrid_quad/frame_field/smoothest_crosses.h"
 #include "hybrid_quad/frame_field/soft_alignment.h"
-#include "hybrid_quad/frame_field/move_cones.h"
 
 namespace hybrid_quad {
 
@@ -172,12 +173,19 @@ std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const Face
   return both;
 }
 
+std::vector<double> expected_turns(const WorkingSurface& surface, const FaceAngles& angles, const FrameFieldOptions& options) {
+  std::vector<double> turns = turns_for_average_curvature(surface, angles, options.curvature_spread);
+  const std::vector<double> at_tips = turns_that_open_tips(surface, angles);
+  for (std::size_t h = 0; h < turns.size(); ++h) turns[h] += at_tips[h];
+  return turns;
+}
+
 }  // namespace
 
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
   FaceAngles angles(mesh);
-  angles.expect_turns(turns_for_average_curvature(surface, angles, options.curvature_spread));
+  angles.expect_turns(expected_turns(surface, angles, options));
   const CrossUnknowns cross = assemble_cross_system(surface, angles, options);
   context.checkpoint(0.1);
   std::array<Solution, 2> both = both_solutions(surface, angles, cross, options, context);

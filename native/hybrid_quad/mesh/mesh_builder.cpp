@@ -7,6 +7,7 @@
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/mesh/canonical_order.h"
+#include "hybrid_quad/mesh/copied_parts.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/mesh_oddities.h"
@@ -50,7 +51,9 @@ class MeshBuilder {
   void make_triangles();
   void weld();
   bool merge_vertices(const std::vector<int>& target);
+  void drop_copied_parts();
   void drop_duplicates();
+  void drop(const std::vector<char>& is_copy);
   BuiltMesh glue();
   void drop_negligible_components(BuiltMesh& built);
 
@@ -74,6 +77,7 @@ class MeshBuilder {
   std::vector<Vector3> positions_;  ///< moved to the box's centre and divided by its diagonal
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
+  std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
 };
 
 void MeshBuilder::check_faces() {
@@ -233,13 +237,20 @@ void MeshBuilder::drop_duplicates() {
   }
   std::sort(keys.begin(), keys.end());
   std::vector<char> is_copy(triangles_.size(), 0);
-  std::vector<int> copies;
   for (std::size_t i = 1; i < keys.size(); ++i)
     if (keys[i].first == keys[i - 1].first) is_copy[keys[i].second] = 1;
+  drop(is_copy);
+  std::sort(copies_.begin(), copies_.end());
+  copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
+  note("duplicate_face", "face", copies_, "left out");
+}
+
+/// Leaves copies of other triangles out.
+void MeshBuilder::drop(const std::vector<char>& is_copy) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     if (is_copy[i]) {
-      copies.push_back(polygon_[i]);
+      copies_.push_back(polygon_[i]);
       continue;
     }
     triangles_[kept] = triangles_[i];
@@ -247,9 +258,10 @@ void MeshBuilder::drop_duplicates() {
   }
   triangles_.resize(kept);
   polygon_.resize(kept);
-  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
-  note("duplicate_face", "face", std::move(copies), "left out");
 }
+
+/// Before cracks are closed: a part would be joined to what it lies on, along its border.
+void MeshBuilder::drop_copied_parts() { drop(copied_parts(positions_, triangles_)); }
 
 BuiltMesh MeshBuilder::glue() {
   ManifoldGluing glued = glue_triangles(positions_, triangles_);
@@ -351,6 +363,8 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   normalize_positions();
   context.checkpoint();
   make_triangles();
+  context.checkpoint();
+  drop_copied_parts();
   context.checkpoint();
   weld();
   context.checkpoint();

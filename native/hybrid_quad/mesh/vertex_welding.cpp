@@ -30,7 +30,8 @@ class VertexSets {
   std::vector<int> parent_;
 };
 
-/// The first vertex at the same place, for every vertex.
+}  // namespace
+
 std::vector<int> places_of(const std::vector<Vector3>& positions) {
   std::vector<int> order(positions.size()), place(positions.size());
   std::iota(order.begin(), order.end(), 0);
@@ -42,8 +43,6 @@ std::vector<int> places_of(const std::vector<Vector3>& positions) {
     place[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? place[order[i - 1]] : order[i];
   return place;
 }
-
-}  // namespace
 
 std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>& faces, std::size_t* edge_count) {
   struct Side {

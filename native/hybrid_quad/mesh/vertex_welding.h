@@ -7,6 +7,9 @@
 
 namespace hybrid_quad {
 
+/// For every vertex the first one at the same place, exactly.
+std::vector<int> places_of(const std::vector<Vector3>& positions);
+
 /// For every vertex the vertex it is to be merged into (itself if none). Ends of open edges are merged where another open
 /// edge lies exactly on them, so cracks of an unwelded mesh close while sheets that merely touch stay apart.
 std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);

@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kCountTolerance = 0.1;  // off by more, a warning says so
 
-/// Of a WorkBudget: about half a minute, and another for ten thousand quads.
-constexpr double kExtraWork = 5e5, kExtraWorkPerQuad = 50;
+/// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
+constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
 
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 /// \param guided  gets those of the component

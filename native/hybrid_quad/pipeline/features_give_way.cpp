@@ -1,0 +1,89 @@
+#include "hybrid_quad/pipeline/features_give_way.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_quad/features/features_with_room.h"
+#include "hybrid_quad/mesh/segment_index.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+// Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
+// the second.
+constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
+
+double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
+    sum += (mesh.position(curve.vertices[i + 1]) - mesh.position(curve.vertices[i])).norm();
+  return sum;
+}
+
+/// Edges that features must have, over the number of quads: every curve one, closed ones four, long ones as many as edges
+/// of four times the usual length make. \param length  the usual one
+double crowding(const TriangleMesh& mesh, const FeatureGraph& features, double quads, double length) {
+  constexpr double kOpen = 1, kClosed = 4, kLongest = 4;
+  double edges = 0;
+  for (const FeatureCurve& curve : features.curves)
+    edges += std::max(curve.closed ? kClosed : kOpen, length_of(mesh, curve) / (kLongest * length));
+  return edges / quads;
+}
+
+/// Takes away the curves of which a half-edge does not remain.
+void take_features_away(ComponentPlan& plan, const std::vector<char>& remains) {
+  std::vector<char> gone(plan.features.curves.size(), 0);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && !remains[h]) gone[plan.features.halfedge_curve[h]] = 1;
+  plan.given_way += static_cast<int>(std::count(gone.begin(), gone.end(), 1));
+  plan.features = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+}
+
+/// Half-edges of features that never give way: those that somebody marked, or wants a number of quads along.
+std::vector<char> firm_features(const ComponentPlan& plan) {
+  std::vector<char> is_firm = plan.is_given;
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_firm[h] = 1;
+  return is_firm;
+}
+
+}  // namespace
+
+void merge_double_lines(ComponentPlan& plan, double length) {
+  constexpr double kGap = 0.05;
+  take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length));
+}
+
+bool make_room(ComponentPlan& plan) {
+  constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
+  const double length = std::sqrt(plan.mesh.total_area() / plan.quads);
+  if (crowding(plan.mesh, plan.features, plan.quads, length) <= kTooCrowded) return false;
+  const std::vector<char> is_kept = firm_features(plan);
+  std::vector<char> remains;
+  for (const double gap : kGaps) {
+    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
+    const FeatureGraph fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+    if (crowding(plan.mesh, fewer, plan.quads, length) <= kRoomy) break;
+  }
+  const int before = plan.given_way;
+  take_features_away(plan, remains);
+  return plan.given_way > before;
+}
+
+bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places) {
+  std::vector<char> remains = firm_features(plan);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
+    if (remains[h] || !plan.features.is_feature(h)) continue;
+    const int a = plan.mesh.from(h), b = plan.mesh.to(h);
+    const double reach = std::max(plan.target[a], plan.target[b]);
+    remains[h] = plan.mesh.opposite(h) < 0 || std::none_of(places.begin(), places.end(), [&](const Vector3& p) {
+      return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < reach * reach;
+    });
+  }
+  const int before = plan.given_way;
+  take_features_away(plan, remains);
+  return plan.given_way > before;
+}
+
+}  // namespace hybrid_quad

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_quad/pipeline/size_plan.h"
+
+namespace hybrid_quad {
+
+// Features by angle that a plan goes without, counted in given_way (docs/decisions/0006, 0007, 0014). Boundaries, marked edges
+// and curves with an asked count always stay. Lengths are to be planned anew after each.
+
+/// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays.
+/// \param length  the usual edge length (scene units)
+void merge_double_lines(ComponentPlan& plan, double length);
+
+/// Where features must have nearly as many edges as there are to be quads, takes as few of them away as make room.
+/// \returns whether any
+bool make_room(ComponentPlan& plan);
+
+/// Takes away the features that pass within an edge of some places. \returns whether any
+bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);
+
+}  // namespace hybrid_quad
