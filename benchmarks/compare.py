@@ -22,7 +22,8 @@ from chord import chord_error, feature_curves
 from comparison import Case, Result, from_outcome, from_stored, page
 from hybrid_quad.core.mesh_arrays import surface_area
 from hybrid_quad.core.mesh_io import read_mesh
-from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, judged, measure, run_and_judge
+from judging import judged
+from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, measure, run_and_judge
 from stored_peers import PEERS, QUADS, stored_results
 from sweep import build_id
 

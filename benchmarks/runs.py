@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import atexit
 import csv
+import functools
 import json
+import math
 import os
 import resource
+import shutil
+import signal
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
@@ -16,6 +23,7 @@ from typing import Any
 
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import topology, violations
+from judging import judged
 
 ROOT = Path(__file__).resolve().parent.parent
 COLLECTION = ROOT.parent / "shared" / "meshes" / "dev"
@@ -44,9 +52,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a run may take before it is ended."""
+    """What a run may take before it is ended.
+
+    On a machine with other work the processor's seconds say what a run costs, the clock's only that it does not hang.
+    """
 
     seconds: float = 300.0
+    cpu_seconds: float | None = None
     grace_seconds: float = 10.0
     memory_mb: int = 8192
     judge_seconds: float = 600.0
@@ -104,9 +116,9 @@ def run_and_judge(
         old.unlink(missing_ok=True)
     command = [sys.executable, "-m", "hybrid_quad", "remesh", str(run.path), str(out), "--quads", str(run.quads)]
     command += [*SETTINGS[run.setting], *run.arguments, "--threads", str(threads), "--report", str(report), "--quiet"]
-    # The run ends itself, and says in which stage; it is killed only if it does not.
+    # By the clock the run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
-    measured = measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb)
+    measured = measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb, limits.cpu_seconds)
     outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
@@ -119,15 +131,14 @@ def run_and_judge(
         return outcome
     reference = run.path
     if outcome.report.get("defects"):
-        reference = folder / f"{run.name}.repaired.obj"
-        outcome.failed = _repair(run.path, reference, limits.judge_seconds)
+        with _REPAIRING:
+            reference, failed = _repaired(run.path, limits.judge_seconds)
+        outcome.failed += failed
     outcome.failed += _own_checks(reference, out)
     if judge is not None and judge.exists():
         judgement = folder / f"{run.name}.judge.json"
         outcome.judgement = judged(judge, run.quads, reference, out, judgement, limits.judge_seconds)
         outcome.failed += outcome.judgement.get("failed", [])
-    if reference != run.path and not outcome.failed:
-        reference.unlink(missing_ok=True)
     outcome.status = "invalid" if outcome.failed else "valid"
     if not keep_meshes:
         out.unlink(missing_ok=True)
@@ -156,11 +167,13 @@ class Measured:
     peak_mb: float
 
 
-def measure(command: list[str], seconds: float, memory_mb: int) -> Measured:
+def measure(command: list[str], seconds: float, memory_mb: int, cpu_seconds: float | None = None) -> Measured:
     """Runs a program with limits, and takes the system's account of it."""
 
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
+        if cpu_seconds is not None:
+            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(cpu_seconds), math.ceil(cpu_seconds) + 5))
 
     begin = time.monotonic()
     with subprocess.Popen(
@@ -181,6 +194,8 @@ def measure(command: list[str], seconds: float, memory_mb: int) -> Measured:
         message = process.stderr.read().strip()
     if timed_out:
         status = "timeout"
+    elif process.returncode == -signal.SIGXCPU:
+        status, message = "timeout", f"more than {cpu_seconds:g} s of the processor"
     elif process.returncode < 0:
         status, message = "crash", f"signal {-process.returncode} {message}"
     else:
@@ -200,13 +215,25 @@ def _is_refusal(report: dict[str, Any]) -> bool:
     return bool(report.get("elements")) or report.get("code") in _WHOLE_MESH
 
 
-def _repair(source: Path, target: Path, seconds: float) -> list[str]:
-    """Writes the surface that the result stands for, where the input is dirty."""
+_REPAIRING = threading.Lock()
+
+
+@functools.cache
+def _repaired(source: Path, seconds: float) -> tuple[Path, list[str]]:
+    """Where the surface is that a result stands for if the input is dirty, and what is wrong with it."""
+    target = _folder_of_repaired() / f"{source.stem}.obj"
     command = [sys.executable, str(Path(__file__).with_name("repaired.py")), str(source), str(target)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
     if not target.exists():
-        return ["own: no repaired mesh: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]
-    return ["own: the repair changed the area"] if done.returncode else []
+        return target, ["own: no repaired mesh: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]
+    return target, ["own: the repair changed the area"] if done.returncode else []
+
+
+@functools.cache
+def _folder_of_repaired() -> Path:
+    folder = tempfile.mkdtemp(prefix="repaired_")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 def _own_checks(source: Path, result: Path) -> list[str]:
@@ -218,17 +245,3 @@ def _own_checks(source: Path, result: Path) -> list[str]:
     if not failed and source.suffix == ".obj" and topology(read_mesh(source)[1]) != topology(polygons):
         failed.append("own: topology differs")
     return failed
-
-
-def judged(judge: Path, quads: int, source: Path, result: Path, report: Path, seconds: float) -> dict[str, Any]:
-    """What the independent judge says of a result; `failed` names it where it says nothing."""
-    command = [sys.executable, str(judge), str(source), str(result), "--target", str(quads), "--json", str(report)]
-    report.unlink(missing_ok=True)
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
-    except subprocess.TimeoutExpired:
-        return {"failed": ["judge: timeout"]}
-    if not report.exists():
-        return {"failed": ["judge: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]}
-    judgement: dict[str, Any] = json.loads(report.read_text())
-    return judgement
