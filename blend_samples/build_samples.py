@@ -23,9 +23,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "addon"))
 
 import hybrid_quad  # noqa: E402
-from hybrid_quad.blender.edge_marks import SHARP, add_sharp_by_angle  # noqa: E402
+from hybrid_quad.core.edge_mark_values import SHARP  # noqa: E402
 from hybrid_quad.core.mesh_arrays import as_polygons  # noqa: E402
 from hybrid_quad.core.mesh_io import read_mesh  # noqa: E402
+from hybrid_quad.core.transfer.edges import add_sharp_by_angle  # noqa: E402
 
 MARK_ANGLE = math.radians(40)
 

@@ -8,9 +8,10 @@ import bpy
 import numpy as np
 import pytest
 
-from hybrid_quad.blender.edge_marks import SHARP, add_sharp_by_angle
+from hybrid_quad.core.edge_mark_values import SHARP
 from hybrid_quad.core.mesh_arrays import as_polygons
 from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.transfer.edges import add_sharp_by_angle
 from scenes import add_object, assert_sound, faces_of, points_of, remesh
 
 MESHES = Path(__file__).resolve().parents[1] / "data" / "meshes"

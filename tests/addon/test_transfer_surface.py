@@ -8,11 +8,11 @@ import pytest
 
 from hybrid_quad.blender.result_mesh import read_report
 from scenes import add_cube, add_object, add_sphere, assert_sound, faces_of, points_of, remesh, sharp_edges_of
-from transfer_scene import corners_of, middles_of, read
+from transfer_scene import corners_of, middles_of, read, set_uv, uv_of
 
 
 def add_plate(thickness: float, cells: int = 16) -> bpy.types.Object:
-    """A bent plate, with 1 in the attribute "Side" above and 0 below."""
+    """A bent plate, with 1 in the attribute "Side" above and 0 below; the sides' material, UV island and color differ too."""
     steps = np.linspace(-1, 1, cells + 1)
     x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
     bend = 0.3 * x**2
@@ -33,6 +33,14 @@ def add_plate(thickness: float, cells: int = 16) -> bpy.types.Object:
     obj.data.attributes.new("Side", "FLOAT", "POINT").data.foreach_set("value", side)
     is_top = np.array([len(set(f) - set(range(count))) == 0 for f in faces])
     obj.data.attributes.new("Top", "BOOLEAN", "FACE").data.foreach_set("value", is_top)
+    for name in ("Below", "Above"):
+        obj.data.materials.append(bpy.data.materials.new(name))
+    obj.data.polygons.foreach_set("material_index", is_top.astype(np.int32))
+    corners, top_corners = corners_of(obj.data), np.repeat(is_top, 4)
+    obj.data.uv_layers.new(name="Sides")
+    set_uv(obj.data.uv_layers["Sides"], points[corners][:, :2] + np.where(top_corners, 5.0, 0.0)[:, None])
+    colors = np.repeat(top_corners[:, None], 4, axis=1).astype(np.float32)
+    obj.data.attributes.new("Color", "FLOAT_COLOR", "CORNER").data.foreach_set("color", colors.ravel())
     obj.hybrid_quad.quads = 400
     return obj
 
@@ -46,7 +54,14 @@ def test_the_sides_of_a_thin_sheet_keep_apart(thickness):
     is_top = read(result.data.attributes["Top"].data, "value", np.bool_)
     clear = np.abs(normals[:, 2]) > 0.5
     assert clear.sum() > 300
-    assert np.array_equal(is_top[clear], normals[clear, 2] > 0)
+    is_up = normals[:, 2] > 0
+    assert np.array_equal(is_top[clear], is_up[clear])
+    assert np.array_equal(read(result.data.polygons, "material_index", np.int32)[clear], is_up[clear])
+    clear_corners, up_corners = np.repeat(clear, 4), np.repeat(is_up, 4)
+    colors = read(result.data.attributes["Color"].data, "color", np.float32, 4)
+    assert np.array_equal(colors[clear_corners, 0], up_corners[clear_corners])
+    places = uv_of(result.data.uv_layers["Sides"]) - np.where(up_corners, 5.0, 0.0)[:, None]
+    assert np.abs(places - points[corners_of(result.data)][:, :2])[clear_corners].max() < 0.05
     # Vertices on the rim belong to both.
     inner = (np.abs(points[:, :2]).max(axis=1) < 0.95) & np.isin(np.arange(len(points)), faces[clear])
     side = read(result.data.attributes["Side"].data, "value", np.float32)

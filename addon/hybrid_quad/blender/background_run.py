@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
+from typing import Any
 
 import bpy
 
-from ..core.errors import InputError
+from ..core.errors import Cancelled, InputError
 from ..core.remesh import RemeshResult
 from ..worker.interpreter import worker_command
+from ..worker.kinds import Request
 from ..worker.known_results import KnownResults
 from ..worker.process import WorkerRun
-from .remesh_task import RemeshTask
+from ..worker.request import RemeshRequest
+from ..worker.transfer_request import STAGE, TransferredData
+from .own_mesh import OwnMesh
+from .remesh_task import RemeshTask, prepare_in_steps
+from .result_making import ResultMaking
 from .source_track import SourceTrack
+from .steps import Steps
 
 _SILENCE = 20.0  # seconds without news after which the user reads about it
+_STEPS = 0.05  # seconds of reading or making a mesh after which no other step is begun before the window answers
+_SOLVED = 0.95  # how much of the whole is done when the quads are there
 
 
 class BackgroundRun:
     """A task that a worker solves, and the object that it came from.
 
+    First the task is read, in steps between which the window answers. Then comes the result and then, by another worker, what that
+    takes along from the source.
+
     Attributes
     ----------
-    task : RemeshTask
     source : SourceTrack
     in_place : bool
         Whether the result was to replace the object's mesh when the run began.
@@ -30,46 +42,193 @@ class BackgroundRun:
         Called when :func:`current` does not give the run any more.
     """
 
-    def __init__(self, task: RemeshTask, obj: bpy.types.Object, mode: str) -> None:
-        self.task = task
+    def __init__(self, task: RemeshTask | None, obj: bpy.types.Object, mode: str) -> None:
+        began = time.monotonic()
+        # Before anything is read: what is edited from now on is noticed.
         self.source = SourceTrack(obj)
         self.in_place: bool = obj.hybrid_quad.result_mode == "REPLACE"
         self._mode = mode
         self.on_forget: Callable[[], object] = lambda: None
-        self._request = task.request()
-        self.worker = WorkerRun(
-            self._request,
-            temporary_folder=bpy.app.tempdir or None,
-            command=worker_command(host=bpy.app.binary_path),
-        )
+        self._task: RemeshTask | None = None
+        self._reading: Steps[RemeshTask] | None = None
+        self._solving: WorkerRun[RemeshResult] | None = None
+        self._request: RemeshRequest | None = None
+        self._result: RemeshResult | None = None
+        self._transfer: WorkerRun[TransferredData] | None = None
+        self._making: ResultMaking | None = None
+        self._waits = self._is_dropped = False
+        if task is not None:
+            self._begin_solving(task)
+        elif mode != "OBJECT" or time.monotonic() < began + _STEPS:
+            self._read(began + _STEPS)
+
+    @property
+    def task(self) -> RemeshTask:
+        """Once it is read."""
+        assert self._task is not None
+        return self._task
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether the task is not read in full yet."""
+        return self._task is None and not self._is_dropped
+
+    @property
+    def is_known(self) -> bool:
+        """Whether a former run's quads are taken, so that none are made."""
+        return self._task is not None and self._solving is None
+
+    @property
+    def worker(self) -> WorkerRun[RemeshResult] | WorkerRun[TransferredData] | None:
+        """The process that is at work, or was last; None as long as the task is being read."""
+        return self._transfer or self._solving
 
     @property
     def fraction(self) -> float:
         """How much is done, 0 to 1."""
-        return 1.0 if self.is_finished else self.worker.fraction
+        if self.is_finished:
+            return 1.0
+        if self._transfer is None:
+            return 0.0 if self._solving is None else _SOLVED * self._solving.fraction
+        return _SOLVED + (1 - _SOLVED) * self._transfer.fraction
 
     @property
     def is_finished(self) -> bool:
-        return self.worker.is_finished
+        """Whether nothing goes on any more, for better or worse."""
+        if self._is_between or self.is_reading:
+            return False
+        return self.worker is None or self.worker.is_finished
 
     @property
     def has_result(self) -> bool:
-        return self.worker.has_result
+        """Whether all has ended well."""
+        return self._transfer is not None and self._transfer.has_result
+
+    def poll(self) -> bool:
+        """Looks how far the run is, without waiting, and does what is next; whether it has ended.
+
+        Raises
+        ------
+        InputError
+            As :func:`.remesh_task.prepare_in_steps`; ``object_gone``.
+        OSError
+            If a worker cannot be begun.
+        """
+        if self.is_reading:
+            self._read(time.monotonic() + _STEPS)
+        elif self._is_between:
+            self._go_on()
+        elif self.worker is not None:
+            self.worker.poll()
+        return self.is_finished
+
+    def cancel(self) -> None:
+        """Ends what goes on, and begins nothing more; :meth:`result` then raises Cancelled. What has ended stays as it is."""
+        self._is_dropped = True
+        if self._reading is not None:
+            self._reading.close()
+        if self._making is not None:
+            self._making.cancel()
+        if self.worker is not None:
+            self.worker.cancel()
+
+    def wait(self) -> None:
+        """Returns when the run has ended."""
+        while not self.poll():
+            if self.worker is not None:
+                self.worker.wait()
+
+    def build(self, obj: bpy.types.Object) -> bool:
+        """Makes the result's mesh for a while, with nothing of the scene changed; whether there is no more to do before it is placed.
+
+        Parts of a mesh, and what is placed out of another mode, are not made before they are placed.
+        """
+        if self.task.part is not None or obj.mode != "OBJECT":
+            return True
+        if self._making is None:
+            self._making = ResultMaking(self.task, self.result(), self.carried())
+        return self._making.go_on(obj, _STEPS)
+
+    def take_built(self) -> OwnMesh | None:
+        """What :meth:`build` made, if it is still there; it belongs to the caller from now on."""
+        return None if self._making is None else self._making.take()
+
+    @property
+    def is_building(self) -> bool:
+        """Whether the result's mesh is being made."""
+        return self._making is not None
+
+    @property
+    def _is_between(self) -> bool:
+        is_solved = self._solving is not None and self._solving.has_result
+        return is_solved and self._transfer is None and not self._is_dropped
+
+    def _read(self, until: float) -> None:
+        """Reads up to a time, but at least one step; begins to solve the task when it is there."""
+        if self._reading is None:
+            obj = self.find_source()
+            # Where the user was faster: in other modes meshes are not what they will be.
+            self._waits = obj.mode != "OBJECT" and self._mode == "OBJECT"
+            if self._waits:
+                return
+            self._reading = prepare_in_steps(obj, bpy.context.evaluated_depsgraph_get())
+        try:
+            next(self._reading)
+            while time.monotonic() < until:
+                next(self._reading)
+        except StopIteration as end:
+            self._begin_solving(end.value)
+        except BaseException:
+            self._is_dropped = True
+            raise
+
+    def _go_on(self) -> None:
+        """What comes between the quads and what they take along, in two steps."""
+        assert self._solving is not None and self._request is not None
+        if self._result is None:
+            self._result = self._solving.result()
+            _known.keep(self._request, self._result)
+        else:
+            self._begin_transfer(self._result)
+
+    def _begin_solving(self, task: RemeshTask) -> None:
+        """A worker solves the task, unless a former run has done so."""
+        self._task, self._request = task, task.request()
+        known = _known.find(self._request)
+        if known is None:
+            self._solving = _worker(self._request, "start")
+        else:
+            self._result = known
+            self._begin_transfer(known)
+
+    def _begin_transfer(self, result: RemeshResult) -> None:
+        self._transfer = _worker(self.task.transfer_request(result), STAGE)
 
     @property
     def status(self) -> str:
         """What it does now, for example ``"Periodic field"``."""
         if self.is_finished:
-            return "Done: go to Object Mode"
+            return "Making the mesh" if self.is_building else "Done: go to Object Mode"
+        if self.worker is None:
+            return "Go to Object Mode: the mesh is to be read" if self._waits else "Reading the mesh"
         silence = self.worker.silent_seconds
         text = self.worker.stage.replace("_", " ").capitalize()
         return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
 
     def result(self) -> RemeshResult:
-        """The finished run's result; raises what the run raised, see :meth:`.process.WorkerRun.result`."""
-        result = self.worker.result()
-        _known.keep(self._request, result)
-        return result
+        """The run's result; waits for the whole run, and raises what that raised, see :meth:`.process.WorkerRun.result`."""
+        self.carried()
+        assert self._result is not None
+        return self._result
+
+    def carried(self) -> TransferredData:
+        """What the result takes along, as :meth:`result`."""
+        self.wait()
+        if self._transfer is None:
+            if self._solving is not None:
+                self._solving.result()  # which raises, but for one that was ended between the two halves
+            raise Cancelled(f"cancelled before {STAGE.replace('_', ' ')}")
+        return self._transfer.result()
 
     def find_source(self) -> bpy.types.Object:
         """The object that the result is for.
@@ -102,6 +261,15 @@ class BackgroundRun:
             )
 
 
+def _worker(request: Request[Any], first_stage: str) -> WorkerRun[Any]:
+    return WorkerRun(
+        request,
+        temporary_folder=bpy.app.tempdir or None,
+        command=worker_command(host=bpy.app.binary_path),
+        first_stage=first_stage,
+    )
+
+
 _current: BackgroundRun | None = None
 _known = KnownResults()
 
@@ -111,26 +279,26 @@ def current() -> BackgroundRun | None:
     return _current
 
 
-def known_result(task: RemeshTask) -> RemeshResult | None:
-    """What a former run of this session gave for the very same task; None where there was none."""
-    return _known.find(task.request())
-
-
 def forget_results() -> None:
-    """Lets go of what :func:`known_result` finds."""
+    """Lets go of the results of former runs."""
     _known.clear()
 
 
-def start(task: RemeshTask, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:
+def start(task: RemeshTask | None, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:
     """Begins a run that :func:`current` gives from now on.
 
     Parameters
     ----------
+    task : RemeshTask or None
+        None: as the object's settings ask, read in steps. Of a mode other than Object Mode the first step, which is all that looks
+        at the object, is done here. What a former run of this session gave for the very same task is not made again.
     mode : str
         ``bpy.types.Context.mode`` in which the user asked for it. One asked for in Sculpt Mode can be placed there.
 
     Raises
     ------
+    InputError
+        If the object shows no surface.
     FileNotFoundError
         If no program can run the worker.
     """
@@ -146,5 +314,5 @@ def forget() -> None:
     run, _current = _current, None
     if run is None:
         return
-    run.worker.cancel()
+    run.cancel()
     run.on_forget()

@@ -6,6 +6,7 @@ edge itself has a property.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import bmesh
@@ -14,23 +15,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.edge_borders import EdgeSides, edge_keys
-from ..core.mesh_arrays import FloatArray, IntArray, Polygons
+from ..core.edge_mark_values import BEVEL, CREASE, FACE_SET, FEATURE, FREESTYLE, MATERIAL, SEAM, SHARP, UV_ISLAND
+from ..core.mesh_arrays import IntArray, Polygons
+from ..core.transfer.edges import EdgeValues
+from .steps import Steps
 
-SHARP = 1
-SEAM = 2
-FEATURE = 4
-CREASE = 8
-BEVEL = 16
-FREESTYLE = 32
-MATERIAL = 64
-FACE_SET = 128
-UV_ISLAND = 256
 BORDERS = MATERIAL | FACE_SET | UV_ISLAND
 
 FEATURE_ATTRIBUTE = "hybrid_quad_feature"
 FACE_SET_ATTRIBUTE = ".sculpt_face_set"  # from Blender 3.5 on; before, Python cannot see face sets
-
-MarkArray = npt.NDArray[np.uint16]
 
 
 class EdgeSource(NamedTuple):
@@ -171,23 +164,14 @@ def marks_guiding(settings: Any) -> int:
     return sum(source.mark for source in SOURCES if source.identifier in settings.guide_marks)
 
 
-class EdgeValues(NamedTuple):
-    """What the edges of a mesh carry.
-
-    Attributes
-    ----------
-    marks : (k,) uint16
-        Sum of the marks of each edge.
-    crease, bevel : (k,) float32
-        Weights, 0..1.
-    """
-
-    marks: MarkArray
-    crease: npt.NDArray[np.float32]
-    bevel: npt.NDArray[np.float32]
+def no_values(count: int) -> EdgeValues:
+    """Of edges that carry nothing."""
+    return EdgeValues(np.zeros(count, np.uint16), np.zeros(count, np.float32), np.zeros(count, np.float32))
 
 
-def read(mesh: bpy.types.Mesh, polygons: Polygons, edges: IntArray, corner_order: Any) -> EdgeValues:
+def read(
+    mesh_of: Callable[[], bpy.types.Mesh], polygons: Polygons, edges: IntArray, corner_order: Any
+) -> Steps[EdgeValues]:
     """All marks and borders of a mesh's edges.
 
     Parameters
@@ -198,16 +182,21 @@ def read(mesh: bpy.types.Mesh, polygons: Polygons, edges: IntArray, corner_order
         The mesh's loop at each corner of `polygons`.
     """
     marks = np.zeros(len(edges), np.uint16)
+    mesh = mesh_of()
     values = {store.mark: _read_store(mesh, store) for store in _STORES}
     for mark, of_edge in values.items():
         marks[of_edge > 0] |= mark
-    sides = EdgeSides(polygons, edges, len(mesh.vertices))
     face_values = {MATERIAL: _read(mesh.polygons, "material_index", np.int32), FACE_SET: _read_face_sets(mesh)}
+    uv = _read_uv(mesh)
+    vertex_count = len(mesh.vertices)
+    yield
+    sides = EdgeSides(polygons, edges, vertex_count)
+    yield
     for mark, of_face in face_values.items():
         if of_face is not None:
             marks[sides.where_faces_differ(of_face)] |= mark
-    uv = _read_uv(mesh)
     if uv is not None:
+        yield
         marks[sides.where_corners_differ(uv[corner_order])] |= UV_ISLAND
     return EdgeValues(marks, values[CREASE].astype(np.float32), values[BEVEL].astype(np.float32))
 
@@ -244,15 +233,6 @@ def hard_edges(mesh: bpy.types.Mesh) -> npt.NDArray[np.bool_]:
     found = [_read_store(mesh, store) > 0 for store in _STORES if store.mark in (SHARP, CREASE)]
     hard: npt.NDArray[np.bool_] = np.logical_or.reduce(found)
     return hard
-
-
-def add_sharp_by_angle(
-    marks: MarkArray, vertices: FloatArray, polygons: Polygons, edges: IntArray, angle: float
-) -> MarkArray:
-    """`marks`, with `SHARP` added where the normals of an edge's two polygons differ by more than `angle` radians."""
-    result = marks.copy()
-    result[EdgeSides(polygons, edges, len(vertices)).where_faces_bend(vertices, angle)] |= SHARP
-    return result
 
 
 def _read_store(mesh: bpy.types.Mesh, store: _Store) -> Any:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -15,9 +16,11 @@ from ..core.surface_places import weights_in
 from ..core.surface_points import fan_triangles, nearest_on_surface
 from . import edge_marks, guide_attributes
 from .edge_marks import EdgeValues
-from .transfer import layers
-from .transfer.layers import SourceLayers
-from .transfer.rest import at_rest
+from .own_mesh import OwnMesh
+from .steps import Steps, finish
+from .transfer import layers, shape_keys
+from .transfer.layers import LayerOrder, SourceLayers
+from .transfer.rest import Rest, at_rest
 
 _FLATTEST = 1e-9  # ratio of the smallest to the largest scale below which no way back exists
 
@@ -113,32 +116,103 @@ def read_source(
     InputError
         ``not_evaluated``, ``no_faces`` or ``flat_scale``.
     """
-    evaluated = obj.evaluated_get(depsgraph)
-    if not evaluated.is_evaluated:
-        raise InputError(
-            "not_evaluated",
-            f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown',
-        )
-    linear = linear_of(obj, depsgraph)
-    if along_axes:
-        linear = np.diag(np.linalg.norm(linear, axis=0))
+    linear = _linear_of_run(obj, depsgraph, along_axes)
     with at_rest(obj, depsgraph, kinds or frozenset()) as rest:
         shown = rest.shown.evaluated_get(depsgraph)
         mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
         try:
             if not mesh.polygons:
-                raise InputError("no_faces", f'"{obj.name}" has no faces')
-            source = source_of(mesh, linear)
-            if kinds is None:
+                raise _no_faces(obj)
+            order = None if kinds is None else LayerOrder.of(rest, kinds)
+            source = finish(source_of(lambda: mesh, linear, order))
+            if order is None:
                 return source
-            own = layers.read(rest, mesh, linear, kinds)
             points = _points(mesh)
         finally:
             shown.to_mesh_clear()
-        seen = None if rest.shown == obj else _seen(obj, depsgraph) @ linear.T
-        if seen is not None and len(seen) != len(points):
+        return _Shapes.of(obj, rest, depsgraph, points).on(source)
+
+
+def source_in_steps(
+    obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, along_axes: bool, kinds: frozenset[str]
+) -> Steps[MeshSource]:
+    """As :func:`read_source`, for a result. Only the first step looks at the object.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_source`; or ``mesh_gone``, where an undo came between the steps.
+    """
+    linear = _linear_of_run(obj, depsgraph, along_axes)
+    with at_rest(obj, depsgraph, kinds) as rest:
+        shown = rest.shown.evaluated_get(depsgraph)
+        new = bpy.data.meshes.new_from_object(shown, preserve_all_data_layers=True, depsgraph=depsgraph)
+        copy = OwnMesh(new, obj.name)
+        try:
+            if not copy.mesh().polygons:
+                raise _no_faces(obj)
+            order = LayerOrder.of(rest, kinds)
+            shapes = _Shapes.of(obj, rest, depsgraph, _points(copy.mesh()))
+        except BaseException:
+            copy.remove()
+            raise
+    try:
+        yield
+        source = yield from source_of(copy.mesh, linear, order)
+    finally:
+        copy.remove()
+    return shapes.on(source)
+
+
+class _Shapes(NamedTuple):
+    """Other shapes of a surface.
+
+    Attributes
+    ----------
+    keys : ShapeKeys or None
+    seen : (n, 3) float64 or None
+        Where the viewport shows the vertices, in object space.
+    """
+
+    keys: shape_keys.ShapeKeys | None
+    seen: FloatArray | None
+
+    @classmethod
+    def of(cls, obj: bpy.types.Object, rest: Rest, depsgraph: bpy.types.Depsgraph, base: FloatArray) -> _Shapes:
+        """Those of an object; evaluates it anew, so that its former evaluated mesh is gone.
+
+        Parameters
+        ----------
+        base : (n, 3) float64
+            Vertices of the mesh in object space.
+        """
+        seen = None if rest.shown == obj else _seen(obj, depsgraph)
+        if seen is not None and len(seen) != len(base):
             seen = None  # the modifiers make other vertices: nothing says which is which
-        return replace(source, layers=layers.with_keys(own, rest, depsgraph, points), seen=seen)
+        return cls(shape_keys.read(rest, depsgraph, base) if rest.has_keys else None, seen)
+
+    def on(self, source: MeshSource) -> MeshSource:
+        """A source with them."""
+        assert source.layers is not None
+        return replace(
+            source,
+            layers=replace(source.layers, keys=self.keys),
+            seen=None if self.seen is None else self.seen @ source.linear.T,
+        )
+
+
+def _no_faces(obj: bpy.types.Object) -> InputError:
+    return InputError("no_faces", f'"{obj.name}" has no faces')
+
+
+def _linear_of_run(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, along_axes: bool) -> FloatArray:
+    if not obj.evaluated_get(depsgraph).is_evaluated:
+        raise InputError(
+            "not_evaluated",
+            f'"{obj.name}" is disabled in viewports or excluded from the view layer, so its modifiers are unknown',
+        )
+    linear = linear_of(obj, depsgraph)
+    return np.diag(np.linalg.norm(linear, axis=0)) if along_axes else linear
 
 
 def linear_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
@@ -163,25 +237,38 @@ def _points(mesh: bpy.types.Mesh) -> FloatArray:
     return points
 
 
-def source_of(mesh: bpy.types.Mesh, linear: FloatArray) -> MeshSource:
-    """A mesh, taken to the run's space by `linear` (3, 3), without layers."""
+def source_of(mesh_of: Callable[[], bpy.types.Mesh], linear: FloatArray, order: LayerOrder | None) -> Steps[MeshSource]:
+    """A mesh, taken to the run's space by `linear` (3, 3), with those layers that are asked for; all but other shapes.
+
+    Parameters
+    ----------
+    mesh_of : callable()
+        The mesh, which is asked for in every step.
+    """
+    mesh = mesh_of()
     starts = _read(mesh.polygons, "loop_start", np.int32)
     sizes = _read(mesh.polygons, "loop_total", np.int32)
     corners = _read(mesh.loops, "vertex_index", np.int32)
-    order = _corner_order(starts, sizes, is_reversed=bool(np.linalg.det(linear) < 0))
-    polygons = Polygons(sizes, np.ascontiguousarray(corners[order]))
+    corner_order = _corner_order(starts, sizes, is_reversed=bool(np.linalg.det(linear) < 0))
+    polygons = Polygons(sizes, np.ascontiguousarray(corners[corner_order]))
     edges = _read(mesh.edges, "vertices", np.int32, 2).reshape(-1, 2)
-    return MeshSource(
+    source = MeshSource(
         linear=linear,
         vertices=_points(mesh) @ linear.T,
         polygons=polygons,
         edges=edges,
-        edge_values=edge_marks.read(mesh, polygons, edges, order),
+        edge_values=edge_marks.no_values(len(edges)),
         guides=guide_attributes.read_guides(mesh, linear),
         guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
         counts=guide_attributes.read_counts(mesh),
     )
+    yield
+    source = replace(source, edge_values=(yield from edge_marks.read(mesh_of, polygons, edges, corner_order)))
+    if order is None:
+        return source
+    yield
+    return replace(source, layers=(yield from layers.read(order, mesh_of, linear)))
 
 
 def _corner_order(starts: IntArray, sizes: IntArray, is_reversed: bool) -> npt.NDArray[np.int64]:

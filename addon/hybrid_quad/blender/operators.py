@@ -14,9 +14,11 @@ from ..core import native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
 from ..worker.death import WorkerDied
+from ..worker.transfer_request import TransferredData
 from . import background_run
 from .background_run import BackgroundRun
 from .modes import out_of, out_of_for_change
+from .own_mesh import OwnMesh
 from .remesh_task import RemeshTask, prepare_task
 from .result_mesh import Placement, place_result
 from .run_display import RunDisplay
@@ -55,26 +57,18 @@ class RemeshOperator(ActiveMeshOperator):
             return self._fail(error)
 
     def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        """Leaves a run to a worker process; the operator is then modal. What is known already is placed at once."""
+        """Leaves a run to worker processes; the operator is then modal. Quads that are known already are not made again."""
         try:
             mode = context.mode
             with out_of(obj, "SCULPT"):
-                task = prepare_task(obj, context.evaluated_depsgraph_get())
-                known = background_run.known_result(task)
-                if known is None:
-                    self._run = background_run.start(task, obj, mode)
-            if known is not None:
-                self.report(
-                    {"INFO"}, "Nothing that quads depend on has changed since they were made: here they are again"
-                )
-                with out_of_for_change(obj):
-                    return self._finish(context, obj, task, known, Placement.of_settings(obj))
+                self._run = background_run.start(None, obj, mode)
         except Exception as error:
             return self._fail(error)
+        self._is_known_told = False
         self._display = RunDisplay(self._run)
         self._run.on_forget = self._end_modal
         self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        self._display.update(context)
+        self._show(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -86,16 +80,25 @@ class RemeshOperator(ActiveMeshOperator):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if not self._run.worker.poll() or (self._run.has_result and not self._run.can_be_placed(context)):
-            self._display.update(context)
-            return {"PASS_THROUGH"}
-        background_run.forget()
+        built = None
         try:
+            if not self._run.poll() or (self._run.has_result and not self._run.can_be_placed(context)):
+                self._show(context)
+                return {"PASS_THROUGH"}
             obj = self._run.find_source()
-            result = self._run.result()
+            if self._run.has_result and not self._run.build(obj):
+                self._show(context)
+                return {"PASS_THROUGH"}
+            built = self._run.take_built()
+            background_run.forget()
+            result, carried = self._run.result(), self._run.carried()
             with out_of_for_change(obj):
-                return self._finish(context, obj, self._run.task, result, self._placement(context, obj))
+                placement = self._placement(context, obj)
+                return self._finish(context, obj, self._run.task, result, placement, carried, built)
         except Exception as error:
+            background_run.forget()
+            if built is not None:
+                built.remove()
             return self._fail(error)
 
     def cancel(self, _context: bpy.types.Context) -> None:
@@ -106,6 +109,13 @@ class RemeshOperator(ActiveMeshOperator):
     def _end_modal(self) -> None:
         bpy.context.window_manager.event_timer_remove(self._timer)
         self._display.clear()
+
+    def _show(self, context: bpy.types.Context) -> None:
+        """Tells the user how far it is."""
+        self._display.update(context)
+        if self._run.is_known and not self._is_known_told:
+            self._is_known_told = True
+            self.report({"INFO"}, "Nothing that quads depend on has changed since they were made: here they are again")
 
     def _placement(self, context: bpy.types.Context, obj: bpy.types.Object) -> Placement:
         """Where the result goes, with regard to what the user did meanwhile."""
@@ -132,8 +142,10 @@ class RemeshOperator(ActiveMeshOperator):
         task: RemeshTask,
         result: RemeshResult,
         placement: Placement,
+        carried: TransferredData | None = None,
+        built: OwnMesh | None = None,
     ) -> set[str]:
-        target = place_result(context, obj, task, result, placement)
+        target = place_result(context, obj, task, result, placement, carried, built)
         self._target = target.name
         for defect in result.report["defects"]:
             self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_defect(defect)}")

@@ -14,6 +14,7 @@ from ..core.remesh_part import PartChoice
 from .edge_marks import FACE_SET_ATTRIBUTE
 from .mesh_source import MeshSource, linear_of, source_of
 from .modes import readable_mesh
+from .steps import finish
 from .transfer import buffers, layers, mask, shape_keys
 from .transfer.rest import Rest
 
@@ -65,12 +66,14 @@ def read_part_source(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind
             raise InputError("no_faces", f'"{obj.name}" has no faces')
         keys = mesh.shape_keys if "shape_keys" in kinds else None
         rest = Rest(obj, (), keys is not None)
-        own = layers.read(rest, mesh, linear, kinds | {"modifiers"})
+        source = finish(source_of(lambda: mesh, linear, layers.LayerOrder.of(rest, kinds | {"modifiers"})))
+        assert source.layers is not None
+        own = source.layers
         if keys is not None:
             base = buffers.read(mesh.vertices, "co", np.float32, 3)
             shapes = {key.name: buffers.read(key.data, "co", np.float32, 3) - base for key in keys.key_blocks}
             own = replace(own, keys=shape_keys.ShapeKeys(shapes, ()))
-        return replace(source_of(mesh, linear), layers=own)
+        return replace(source, layers=own)
 
 
 def _selected(mesh: bpy.types.Mesh, _settings: Any) -> BoolArray:

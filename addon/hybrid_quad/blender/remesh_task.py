@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 import numpy as np
@@ -17,10 +17,13 @@ from ..core.remesh import RemeshResult
 from ..core.remesh_part import PartChoice
 from ..core.strokes import Stroke, strokes_of_segments
 from ..worker.request import RemeshRequest
+from ..worker.transfer_request import TransferRequest
 from . import edge_marks, guide_lines
-from .mesh_source import MeshSource, read_source
+from .mesh_source import MeshSource, read_source, source_in_steps
 from .part_source import choice_of, read_part_source
+from .steps import Steps
 from .transfer import kinds
+from .transfer.layers import request_of
 
 if TYPE_CHECKING:
     from .properties import HybridQuadSettings
@@ -95,6 +98,10 @@ class RemeshTask:
             part=self.part,
         )
 
+    def transfer_request(self, result: RemeshResult) -> TransferRequest:
+        """What a result of the task takes along from its source, to be computed here or in another process."""
+        return request_of(self, result)
+
     def solve(
         self,
         progress: Callable[[str, float], object] | None = None,
@@ -129,63 +136,152 @@ def prepare_task(
     InputError
         If the object shows no surface.
     """
-    settings: HybridQuadSettings = obj.hybrid_quad
-    by_chord = settings.target_mode == "CHORD"
-    options = RemeshOptions(
-        quads=settings.quads,
-        edge_length=settings.edge_length if settings.target_mode == "LENGTH" else None,
-        sharp_angle=round(math.degrees(settings.sharp_angle), 4) if settings.use_sharp_angle else None,
-        adaptivity=0.0 if by_chord else settings.adaptivity,
-        chord_error=settings.chord_error if by_chord else None,
-        symmetry=settings.symmetry,
-        seed=seed,
-        threads=threads,
-        time_limit=settings.time_limit or None if time_limit is None else time_limit,
-        memory_limit=settings.memory_limit or None if memory_limit is None else memory_limit,
-        **{name: getattr(settings, name) for name in _NUMBERS},
-    )
-    part = choice_of(obj) if for_result else None
-    asked = kinds.asked_by(settings) if for_result else None
-    if part is None:
-        source = read_source(obj, depsgraph, along_axes=bool(options.symmetry), kinds=asked)
+    order = _TaskOrder.of(obj, depsgraph, seed, threads, time_limit, memory_limit, for_result)
+    if order.part is None:
+        source = read_source(obj, depsgraph, along_axes=bool(order.options.symmetry), kinds=order.kinds)
     else:
-        source = read_part_source(obj, depsgraph, asked)
-    if settings.target_mode == "RATIO":
-        faces = len(source.polygons.sizes) if part is None else int(part.faces.sum())
-        options = replace(options, quads=min(max(round(settings.ratio * faces), 1), MOST_QUADS))
-    return RemeshTask(
-        source,
-        options,
-        edge_marks.marks_asked(settings),
-        strokes=_strokes(obj, source, depsgraph),
-        stroke_radius=settings.guide_radius,
-        use_guides=settings.use_guide_attribute,
-        use_density=settings.use_density_attribute,
-        part=part,
-    )
+        source = read_part_source(obj, depsgraph, order.kinds or frozenset())
+    return order.task(source)
 
 
-def _strokes(obj: bpy.types.Object, source: MeshSource, depsgraph: bpy.types.Depsgraph) -> tuple[Stroke, ...]:
-    """The lines that an object's settings name as guides, in the source's space."""
-    settings: HybridQuadSettings = obj.hybrid_quad
-    guiding, kept = edge_marks.marks_guiding(settings), edge_marks.marks_asked(settings)
-    soft = ((source.marks & guiding) != 0) & ((source.marks & kept) == 0)
-    strokes = strokes_of_segments(source.vertices[source.edges[soft]], settings.guide_marks_strength)
-    matrix = obj.evaluated_get(depsgraph).matrix_world
-    origin, linear = np.array(matrix.translation, np.float64), np.array(matrix.to_3x3(), np.float64)
+def prepare_in_steps(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Steps[RemeshTask]:
+    """:func:`prepare_task` for a result, in steps of which only the first looks at the object; a part of a mesh is read in that.
 
-    def from_world(line: FloatArray) -> FloatArray:
-        local = line - origin
-        if not np.array_equal(linear, source.linear):
-            local = np.linalg.solve(linear, local.T).T @ source.linear.T
-        return source.from_seen(local)
+    Raises
+    ------
+    InputError
+        As :func:`prepare_task`; or ``mesh_gone``, where an undo came between the steps.
+    """
+    order = _TaskOrder.of(obj, depsgraph)
+    assert order.kinds is not None
+    if order.part is not None:
+        return order.task(read_part_source(obj, depsgraph, order.kinds))
+    source = yield from source_in_steps(obj, depsgraph, along_axes=bool(order.options.symmetry), kinds=order.kinds)
+    yield
+    return order.task(source)
 
-    strokes += [
-        Stroke(from_world(line), settings.guide_objects_strength, kind)
-        for kind, line in guide_lines.lines_of_settings(settings, depsgraph)
-    ]
-    if settings.use_guide_annotations:
-        lines = guide_lines.lines_of_annotations(depsgraph.scene)
-        kind = settings.guide_annotations_kind.lower()
-        strokes += [Stroke(from_world(line), settings.guide_annotations_strength, kind) for line in lines]
-    return tuple(stroke for stroke in strokes if stroke.strength > 0 or stroke.kind != "direction")
+
+class _Lines(NamedTuple):
+    """Lines that guide, with the place of the object that they guide, all in world space.
+
+    Attributes
+    ----------
+    matrix : (4, 4) float64
+        The object's.
+    each : list of (points (k, 3), strength, kind)
+    guiding_marks, kept_marks : int
+        Sums of the marks that make an edge a guide, and of those that make it a feature instead.
+    marks_strength : float
+        Of the guides that such edges are.
+    """
+
+    matrix: FloatArray
+    each: list[tuple[FloatArray, float, str]]
+    guiding_marks: int
+    kept_marks: int
+    marks_strength: float
+
+    @classmethod
+    def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Lines:
+        """Those that an object's settings name."""
+        settings: HybridQuadSettings = obj.hybrid_quad
+        each = [
+            (line, settings.guide_objects_strength, kind)
+            for kind, line in guide_lines.lines_of_settings(settings, depsgraph)
+        ]
+        if settings.use_guide_annotations:
+            kind = settings.guide_annotations_kind.lower()
+            lines = guide_lines.lines_of_annotations(depsgraph.scene)
+            each += [(line, settings.guide_annotations_strength, kind) for line in lines]
+        return cls(
+            np.array(obj.evaluated_get(depsgraph).matrix_world, np.float64),
+            each,
+            edge_marks.marks_guiding(settings),
+            edge_marks.marks_asked(settings),
+            settings.guide_marks_strength,
+        )
+
+    def strokes(self, source: MeshSource) -> tuple[Stroke, ...]:
+        """They, and marked edges that guide, in the space of the object's source."""
+        soft = ((source.marks & self.guiding_marks) != 0) & ((source.marks & self.kept_marks) == 0)
+        strokes = strokes_of_segments(source.vertices[source.edges[soft]], self.marks_strength)
+        origin, linear = self.matrix[:3, 3], self.matrix[:3, :3]
+
+        def from_world(line: FloatArray) -> FloatArray:
+            local = line - origin
+            if not np.array_equal(linear, source.linear):
+                local = np.linalg.solve(linear, local.T).T @ source.linear.T
+            return source.from_seen(local)
+
+        strokes += [Stroke(from_world(line), strength, kind) for line, strength, kind in self.each]
+        return tuple(stroke for stroke in strokes if stroke.strength > 0 or stroke.kind != "direction")
+
+
+class _TaskOrder(NamedTuple):
+    """What an object's settings ask for, with nothing of Blender's own."""
+
+    options: RemeshOptions
+    ratio: float | None
+    kinds: frozenset[str] | None
+    part: PartChoice | None
+    feature_marks: int
+    lines: _Lines
+    stroke_radius: float
+    use_guides: bool
+    use_density: bool
+
+    @classmethod
+    def of(
+        cls,
+        obj: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        seed: int = 0,
+        threads: int = 0,
+        time_limit: float | None = None,
+        memory_limit: float | None = None,
+        for_result: bool = True,
+    ) -> _TaskOrder:
+        """See :func:`prepare_task`."""
+        settings: HybridQuadSettings = obj.hybrid_quad
+        by_chord = settings.target_mode == "CHORD"
+        options = RemeshOptions(
+            quads=settings.quads,
+            edge_length=settings.edge_length if settings.target_mode == "LENGTH" else None,
+            sharp_angle=round(math.degrees(settings.sharp_angle), 4) if settings.use_sharp_angle else None,
+            adaptivity=0.0 if by_chord else settings.adaptivity,
+            chord_error=settings.chord_error if by_chord else None,
+            symmetry=settings.symmetry,
+            seed=seed,
+            threads=threads,
+            time_limit=settings.time_limit or None if time_limit is None else time_limit,
+            memory_limit=settings.memory_limit or None if memory_limit is None else memory_limit,
+            **{name: getattr(settings, name) for name in _NUMBERS},
+        )
+        return cls(
+            options=options,
+            ratio=settings.ratio if settings.target_mode == "RATIO" else None,
+            kinds=kinds.asked_by(settings) if for_result else None,
+            part=choice_of(obj) if for_result else None,
+            feature_marks=edge_marks.marks_asked(settings),
+            lines=_Lines.of(obj, depsgraph),
+            stroke_radius=settings.guide_radius,
+            use_guides=settings.use_guide_attribute,
+            use_density=settings.use_density_attribute,
+        )
+
+    def task(self, source: MeshSource) -> RemeshTask:
+        """The same, asked of the object's source."""
+        options, part = self.options, self.part
+        if self.ratio is not None:
+            faces = len(source.polygons.sizes) if part is None else int(part.faces.sum())
+            options = replace(options, quads=min(max(round(self.ratio * faces), 1), MOST_QUADS))
+        return RemeshTask(
+            source,
+            options,
+            self.feature_marks,
+            strokes=self.lines.strokes(source),
+            stroke_radius=self.stroke_radius,
+            use_guides=self.use_guides,
+            use_density=self.use_density,
+            part=part,
+        )

@@ -14,9 +14,12 @@ from ..core import report
 from ..core.errors import InternalError
 from ..core.part_weld import PartResult
 from ..core.remesh import CORNER, RemeshResult
+from ..worker.transfer_request import TransferredData
 from . import edge_marks, result_features
+from .own_mesh import OwnMesh
 from .part_mesh import joined_mesh
 from .remesh_task import RemeshTask
+from .steps import Steps, finish
 from .transfer import layers as transfer_layers
 from .transfer import object_data
 
@@ -49,13 +52,24 @@ def place_result(
     task: RemeshTask,
     result: RemeshResult,
     placement: Placement | None = None,
+    carried: TransferredData | None = None,
+    built: OwnMesh | None = None,
 ) -> bpy.types.Object:
     """Puts a run's result where it is wanted, by default as the object's settings say; returns the object that has it.
 
     Nothing of the scene changes before the whole mesh exists.
+
+    Parameters
+    ----------
+    carried : TransferredData, optional
+        What the task's transfer request for this result gave, where that is known already.
+    built : OwnMesh, optional
+        What :func:`build_in_steps` gave, where that was done already.
     """
+    if carried is None:
+        carried = task.transfer_request(result).solve()
     placement = placement or Placement.of_settings(obj)
-    mesh = build_mesh(obj, task, result)
+    mesh = (built or finish(build_in_steps(obj, task, result, carried))).release()
     if isinstance(result, PartResult):
         mesh = _joined(obj, mesh, result)
     target = _replace_mesh(obj, mesh, task) if placement.in_place else _add_object(context, obj, mesh, task, placement)
@@ -73,27 +87,38 @@ def read_report(obj: bpy.types.Object) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def build_mesh(source: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> bpy.types.Mesh:
+def build_in_steps(
+    source: bpy.types.Object, task: RemeshTask, result: RemeshResult, carried: TransferredData
+) -> Steps[OwnMesh]:
     """A new mesh with the result's quads, in object space, and with what it takes along of the source.
+
+    Only the first step looks at the source.
 
     Raises
     ------
     InternalError
         If Blender finds the mesh invalid.
+    InputError
+        ``mesh_gone``, where an undo came between the steps.
     """
     layers = task.source.layers
     assert layers is not None
-    mesh = object_data.empty_mesh_like(source, layers, len(result.vertices))
-    # Vertex groups are reached through an object only.
-    holder = bpy.data.objects.new(mesh.name, mesh)
+    own = OwnMesh(object_data.empty_mesh_like(source, layers, len(result.vertices)), source.name)
     try:
-        _fill(holder, task, result)
+        _add_quads(own.mesh(), task, result)
+        yield
+        yield from transfer_layers.write(own, task, result, carried)
+        yield
+        _mark_features(own.mesh(), task, result)
+        yield
+        mesh = own.mesh()
+        if mesh.validate(clean_customdata=False):
+            raise InternalError("Blender found the resulting mesh invalid", "validation")
+        mesh.update()
     except BaseException:
-        bpy.data.objects.remove(holder)
-        bpy.data.meshes.remove(mesh)
+        own.remove()
         raise
-    bpy.data.objects.remove(holder)
-    return mesh
+    return own
 
 
 def _joined(obj: bpy.types.Object, part_mesh: bpy.types.Mesh, result: PartResult) -> bpy.types.Mesh:
@@ -103,8 +128,9 @@ def _joined(obj: bpy.types.Object, part_mesh: bpy.types.Mesh, result: PartResult
         bpy.data.meshes.remove(part_mesh)
 
 
-def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None:
-    mesh, source = holder.data, task.source
+def _add_quads(mesh: bpy.types.Mesh, task: RemeshTask, result: RemeshResult) -> None:
+    source = task.source
+    assert source.layers is not None
     quads = result.quads[:, ::-1] if source.is_mirrored else result.quads
     points = source.to_object_space(result.vertices)
     mesh.vertices.add(len(points))
@@ -120,14 +146,13 @@ def _fill(holder: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> N
         # Before Blender 4.1 sharp edges show only with this; 180 degrees: only marked edges are sharp.
         mesh.use_auto_smooth = bool(source.layers.faces.is_smooth.any())
         mesh.auto_smooth_angle = math.pi
-    transfer_layers.write(holder, task, result)
+
+
+def _mark_features(mesh: bpy.types.Mesh, task: RemeshTask, result: RemeshResult) -> None:
     corners = np.flatnonzero(result.vertex_kinds == CORNER)
     result_features.write(mesh, result.feature_edges, corners)
     if task.options.fit_limit_surface:
         edge_marks.crease(mesh, result.feature_edges, corners)
-    if mesh.validate(clean_customdata=False):
-        raise InternalError("Blender found the resulting mesh invalid", "validation")
-    mesh.update()
 
 
 def _add_object(

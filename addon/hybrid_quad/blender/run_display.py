@@ -23,7 +23,7 @@ class RunDisplay:
         """Shows how far the run is, where that has changed."""
         done = f"{100 * self._run.fraction:.0f} %"
         text = f'Remeshing "{self._run.source.name}": {self._run.status}, {done}    {_HOW_TO_CANCEL}'
-        if self._run.is_finished:
+        if self._run.is_finished and not self._run.is_building:
             text = f'"{self._run.source.name}" is remeshed: go to Object Mode to get the result'
         if text == self._text and context.workspace.name in self._workspaces:
             return

@@ -78,8 +78,6 @@ class OBJECT_OT_hybrid_quad_remesh_selected(RemeshOperator):
             state = set() if obj is None else self._begin(context, obj)
             if "RUNNING_MODAL" in state:
                 return state
-            if "FINISHED" in state:
-                self._done.append(self._target)
         return self._end(context)
 
     def _end(self, context: bpy.types.Context) -> set[str]:

@@ -25,8 +25,9 @@ _ATTRIBUTES = {
     "QUATERNION": ("value", 4, np.float32),
 }
 # What is selected or hidden is no change of a mesh.
-_DISPLAY_ATTRIBUTES = (".select", ".hide", ".vs.", ".es.", ".pn.")
-# Marks that older Blenders keep outside attributes.
+_DISPLAY_ATTRIBUTES = (".select", ".uv_select", ".hide", ".vs.", ".es.", ".pn.")
+# Older Blenders keep places, faces and marks outside attributes.
+_ALL_IN_ATTRIBUTES = (4, 2)
 _EDGE_MARKS = ("use_seam", "use_edge_sharp", "crease", "bevel_weight", "use_freestyle_mark")
 
 
@@ -87,15 +88,16 @@ def _state(obj: bpy.types.Object) -> tuple[bytes, bytes]:
 def _mesh_state(mesh: bpy.types.Mesh) -> bytes:
     """A digest of a mesh, without what is selected."""
     digest = hashlib.blake2b()
-    _add(digest, mesh.vertices, "co", 3, np.float32)
-    _add(digest, mesh.edges, "vertices", 2, np.int32)
-    _add(digest, mesh.loops, "vertex_index", 1, np.int32)
     _add(digest, mesh.polygons, "loop_start", 1, np.int32)
-    _add(digest, mesh.polygons, "use_smooth", 1, np.bool_)
-    _add(digest, mesh.polygons, "material_index", 1, np.int32)
-    for name in _EDGE_MARKS:
-        if name in bpy.types.MeshEdge.bl_rna.properties:
-            _add(digest, mesh.edges, name, 1, np.bool_ if name.startswith("use_") else np.float32)
+    if bpy.app.version < _ALL_IN_ATTRIBUTES:
+        _add(digest, mesh.vertices, "co", 3, np.float32)
+        _add(digest, mesh.edges, "vertices", 2, np.int32)
+        _add(digest, mesh.loops, "vertex_index", 1, np.int32)
+        _add(digest, mesh.polygons, "use_smooth", 1, np.bool_)
+        _add(digest, mesh.polygons, "material_index", 1, np.int32)
+        for name in _EDGE_MARKS:
+            if name in bpy.types.MeshEdge.bl_rna.properties:
+                _add(digest, mesh.edges, name, 1, np.bool_ if name.startswith("use_") else np.float32)
     for attribute in mesh.attributes:
         if attribute.data_type in _ATTRIBUTES and not attribute.name.startswith(_DISPLAY_ATTRIBUTES):
             digest.update(f"{attribute.name} {attribute.domain} {attribute.data_type}".encode())
@@ -104,9 +106,9 @@ def _mesh_state(mesh: bpy.types.Mesh) -> bytes:
 
 
 def _add(digest: Any, collection: Any, name: str, width: int, dtype: type) -> None:
-    values = np.zeros(len(collection) * width, dtype)
+    values = np.empty(len(collection) * width, dtype)
     collection.foreach_get(name, values)
-    digest.update(values.tobytes())
+    digest.update(values.view(np.uint8))
 
 
 def _settings(modifier: bpy.types.Modifier) -> list[tuple[str, str]]:

@@ -32,8 +32,13 @@ class EdgeSides:
         sides = np.stack([polygons.vertices, polygons.vertices[following]], axis=1)
         keys, wanted = edge_keys(sides, vertex_count), edge_keys(edges, vertex_count)
         order = np.argsort(keys, kind="stable")
-        first = np.searchsorted(keys[order], wanted, "left")
-        count = np.searchsorted(keys[order], wanted, "right") - first
+        keys = keys[order]
+        # Looked for in their order: each is then found where the one before was.
+        along = np.argsort(wanted)
+        first, count = (np.empty(len(wanted), np.int64) for _ in range(2))
+        first[along] = np.searchsorted(keys, wanted[along], "left")
+        count[along] = np.searchsorted(keys, wanted[along], "right")
+        count -= first
         self._inner = np.flatnonzero(count == 2)
         # Corners at which the edge begins in either polygon, and those at which it ends.
         self._begin = np.stack([order[first[self._inner]], order[first[self._inner] + 1]], axis=1)
@@ -60,10 +65,11 @@ class EdgeSides:
         at = np.asarray(values, np.float64)
         vertices = self._polygons.vertices
         # Two polygons of one orientation pass their edge in opposite directions.
-        alike = (vertices[self._begin[:, 0]] == vertices[self._begin[:, 1]])[:, None]
-        begin = np.where(alike, at[self._begin[:, 1]], at[self._end[:, 1]])
-        end = np.where(alike, at[self._end[:, 1]], at[self._begin[:, 1]])
-        gap = np.maximum(np.abs(at[self._begin[:, 0]] - begin), np.abs(at[self._end[:, 0]] - end))
+        alike = vertices[self._begin[:, 0]] == vertices[self._begin[:, 1]]
+        begin = np.where(alike, self._begin[:, 1], self._end[:, 1])
+        end = np.where(alike, self._end[:, 1], self._begin[:, 1])
+        gap: Any = np.abs(at.take(self._begin[:, 0], axis=0) - at.take(begin, axis=0))
+        np.maximum(gap, np.abs(at.take(self._end[:, 0], axis=0) - at.take(end, axis=0)), out=gap)
         return self._spread((gap > tolerance).any(axis=1))
 
     def _owners(self) -> Any:
@@ -95,8 +101,8 @@ def following_corners(polygons: Polygons) -> Any:
 
 def edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:
     """One number for each vertex pair, the same for both orders of the two."""
-    pairs = np.sort(edges.astype(np.int64), axis=1)
-    keys: npt.NDArray[np.int64] = pairs[:, 0] * vertex_count + pairs[:, 1]
+    one, other = edges[:, 0].astype(np.int64), edges[:, 1].astype(np.int64)
+    keys: npt.NDArray[np.int64] = np.minimum(one, other) * vertex_count + np.maximum(one, other)
     return keys
 
 

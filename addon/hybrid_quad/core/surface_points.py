@@ -14,6 +14,10 @@ from .mesh_arrays import FloatArray, IntArray, Polygons
 _POINTS = 2000
 _PAIRS = 1_000_000
 _LEAF = 8  # triangles of the smallest boxes
+_BEAM = 6  # boxes that are looked into for a first bound
+# How much the squared distance to a box's middle counts beside the one to the box: little, so that it only tells apart boxes that
+# hold a point, or are about as far from it. Any value gives a true bound; it says how tight that is.
+_AWAY = 1e-3
 
 
 class SurfacePoints(NamedTuple):
@@ -50,16 +54,25 @@ def nearest_on_surface(points: FloatArray, vertices: FloatArray, triangles: IntA
     vertices : (n, 3) float64
     triangles : (t, 3) int
     """
-    tree = _BoxTree(vertices[triangles])
-    positions = np.empty((len(points), 3))
-    found = np.empty(len(points), np.int64)
-    for begin in range(0, len(points), _POINTS):
-        part = slice(begin, begin + _POINTS)
-        positions[part], found[part] = tree.nearest(points[part])
-    return SurfacePoints(positions, found)
+    return SurfacePoints(*BoxTree(vertices[triangles]).nearest(points))
 
 
-class _BoxTree:
+# Numbers of points and of triangles, and their distances.
+Pairs = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray]
+
+
+def as_near_as_the_nearest(
+    which: npt.NDArray[np.int64], others: npt.NDArray[np.int64], gaps: FloatArray, slack: float
+) -> Pairs:
+    """Those of some pairs that are at most `slack` farther than the nearest one of the same point."""
+    owners, own = np.unique(which, return_inverse=True)
+    least = np.full(len(owners), np.inf)
+    np.minimum.at(least, own, gaps)
+    near = gaps <= least[own] + slack
+    return which[near], others[near], gaps[near]
+
+
+class BoxTree:
     """Boxes around triangles that lie together, around pairs of these, and so on up to one box around all.
 
     Parameters
@@ -71,58 +84,114 @@ class _BoxTree:
         order = np.argsort(_place_on_curve(corners.mean(axis=1)), kind="stable")
         leaves = 1 << max(0, int(np.ceil(np.log2(len(order) / _LEAF))))
         # The last triangle again and again fills the last boxes.
+        self._count = len(order)
         self._triangles = np.concatenate([order, np.repeat(order[-1], leaves * _LEAF - len(order))])
         self._corners = corners[self._triangles]
-        boxed = self._corners.reshape(leaves, 3 * _LEAF, 3)
-        low, high = boxed.min(axis=1), boxed.max(axis=1)
+        self._low, self._high = self._corners.min(axis=1), self._corners.max(axis=1)
+        low, high = (each.reshape(leaves, _LEAF, 3) for each in (self._low, self._high))
+        low, high = low.min(axis=1), high.max(axis=1)
         self._levels = [(low, high)]  # from the root down
         while len(low) > 1:
             low, high = low.reshape(-1, 2, 3).min(axis=1), high.reshape(-1, 2, 3).max(axis=1)
             self._levels.insert(0, (low, high))
 
-    def nearest(self, points: FloatArray) -> tuple[FloatArray, npt.NDArray[np.int64]]:
-        """Of each point the nearest place of a triangle, and which: level by level, all boxes that may hold it."""
+    def nearest(self, points: FloatArray, reach: FloatArray | None = None) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+        """(k, 3) and (k,) of each point the nearest place of a triangle, and which; of several the one with the lowest number.
+
+        With a `reach` (k,), -1 and any place where no triangle is as near.
+        """
+        positions = np.zeros((len(points), 3))
+        found = np.full(len(points), -1, np.int64)
+        for which, triangles, places, squared in self._nearest_candidates(points, 0.0, reach):
+            order = np.lexsort((triangles, squared, which))
+            owners, first = np.unique(which[order], return_index=True)
+            positions[owners], found[owners] = places[order][first], triangles[order][first]
+        return positions, found
+
+    def as_near(self, points: FloatArray, slack: float) -> Iterator[Pairs]:
+        """All pairs of a point and a triangle at most `slack` farther than its nearest one, which are there for each point.
+
+        In parts; all pairs of a point are in one of them.
+        """
+        for which, triangles, _, squared in self._nearest_candidates(points, slack):
+            yield as_near_as_the_nearest(which, triangles, np.sqrt(squared), slack)
+
+    def within(self, points: FloatArray, reach: FloatArray) -> Iterator[Pairs]:
+        """All pairs of a point and a triangle within its `reach` (k,).
+
+        In parts; all pairs of a point are in one of them.
+        """
+        for begin in range(0, len(points), _POINTS):
+            part = slice(begin, begin + _POINTS)
+            for which, triangles, _, squared in self._candidates(points[part], reach[part] ** 2):
+                near = squared <= reach[begin + which] ** 2
+                yield begin + which[near], triangles[near], np.sqrt(squared[near])
+
+    def _nearest_candidates(
+        self, points: FloatArray, slack: float, reach: FloatArray | None = None
+    ) -> Iterator[_Candidates]:
+        """As `_candidates`: all triangles at most `slack` farther than the nearest, within `reach` (k,) if given, and some more."""
+        for begin in range(0, len(points), _POINTS):
+            part = slice(begin, begin + _POINTS)
+            bound = self._squared_bound(points[part])
+            if slack:
+                bound = (np.sqrt(bound) + slack) ** 2
+            if reach is None:
+                for which, triangles, places, squared in self._candidates(points[part], bound):
+                    yield begin + which, triangles, places, squared
+                continue
+            squared_reach = reach[part] ** 2
+            for which, triangles, places, squared in self._candidates(points[part], np.minimum(bound, squared_reach)):
+                near = squared <= squared_reach[which]
+                yield begin + which[near], triangles[near], places[near], squared[near]
+
+    def _squared_bound(self, points: FloatArray) -> FloatArray:
+        """(k,) squared distances of points to some corner of a triangle near each: on the way down the few nearest boxes stay."""
+        box = np.zeros((len(points), 1), np.int64)
+        for low, high in self._levels[1:]:
+            box = (2 * box[:, :, None] + (0, 1)).reshape(len(points), -1)
+            if box.shape[1] > _BEAM:
+                gap = _squared_gaps(points[:, None], low[box], high[box])
+                offset = points[:, None] - 0.5 * (low[box] + high[box])
+                away = gap + _AWAY * np.einsum("...i,...i->...", offset, offset)
+                box = np.take_along_axis(box, np.argpartition(away, _BEAM, axis=1)[:, :_BEAM], axis=1)
+        at = (_LEAF * box[:, :, None] + np.arange(_LEAF)).reshape(len(points), -1)
+        corners = self._corners[at, 0]
+        squared: FloatArray = _squared_gaps(points[:, None], corners, corners).min(axis=1)
+        return squared
+
+    def _candidates(self, points: FloatArray, squared_reach: FloatArray) -> Iterator[_Candidates]:
+        """Pairs of a point and a triangle whose box is within a point's reach: all that are near enough, and some more.
+
+        In parts; all pairs of a point are in one of them.
+        """
         which, box = np.arange(len(points)), np.zeros(len(points), np.int64)
-        bound = np.full(len(points), np.inf)
-        gap = np.zeros(len(points))
         for level, (low, high) in enumerate(self._levels):
             if level:
                 which, box = np.repeat(which, 2), (2 * box[:, None] + (0, 1)).ravel()
-            below, above = low[box] - points[which], points[which] - high[box]
-            gap = np.linalg.norm(np.maximum(np.maximum(below, above), 0), axis=1)
-            # No place in a box is farther than its farthest corner.
-            np.minimum.at(bound, which, np.linalg.norm(np.maximum(np.abs(below), np.abs(above)), axis=1))
-            near = gap <= bound[which]
-            which, box, gap = which[near], box[near], gap[near]
-        # The most promising box of each point first: it leaves few of the others.
-        order = np.lexsort((gap, which))
-        first = order[np.searchsorted(which[order], np.arange(len(points)))]
-        places, squared, triangles = self._nearest_in_boxes(points, which[first], box[first])
-        best = (np.sqrt(squared), places, triangles)
-        others = gap <= best[0][which]
-        others[first] = False
-        which, box = which[others], box[others]
-        for begin in range(0, len(which), _PAIRS // _LEAF):
-            part = slice(begin, begin + _PAIRS // _LEAF)
-            places, squared, triangles = self._nearest_in_boxes(points, which[part], box[part])
-            order = np.lexsort((squared, which[part]))
-            owners, chosen = np.unique(which[part][order], return_index=True)
-            chosen = order[chosen]
-            closer = np.sqrt(squared[chosen]) < best[0][owners]
-            for kept, new in zip(best, (np.sqrt(squared), places, triangles), strict=True):
-                kept[owners[closer]] = new[chosen[closer]]
-        return best[1], best[2]
+            near = _squared_gaps(points[which], low[box], high[box]) <= squared_reach[which]
+            which, box = which[near], box[near]
+        ends = np.cumsum(np.bincount(which, minlength=len(points)))
+        for first, last in parts(ends, _PAIRS // _LEAF):
+            part = slice(ends[first - 1] if first else 0, ends[last - 1])
+            at = (_LEAF * box[part, None] + np.arange(_LEAF)).ravel()
+            owners = np.repeat(which[part], _LEAF)
+            near = at < self._count
+            near &= _squared_gaps(points[owners], self._low[at], self._high[at]) <= squared_reach[owners]
+            at, owners = at[near], owners[near]
+            places = nearest_in_triangles(points[owners], self._corners[at])
+            yield owners, self._triangles[at], places, ((places - points[owners]) ** 2).sum(axis=1)
 
-    def _nearest_in_boxes(
-        self, points: FloatArray, which: npt.NDArray[np.int64], box: npt.NDArray[np.int64]
-    ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.int64]]:
-        """For pairs of a point and a box: the nearest place, its squared distance, and its triangle."""
-        at = (_LEAF * box[:, None] + np.arange(_LEAF)).ravel()
-        own = np.repeat(points[which], _LEAF, axis=0)
-        places = nearest_in_triangles(own, self._corners[at])
-        squared = ((places - own) ** 2).sum(axis=1).reshape(-1, _LEAF)
-        chosen = _LEAF * np.arange(len(box)) + squared.argmin(axis=1)
-        return places[chosen], squared.min(axis=1), self._triangles[at[chosen]]
+
+# Numbers of points and of triangles, the triangles' places nearest to the points, and their squared distances.
+_Candidates = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray, FloatArray]
+
+
+def _squared_gaps(points: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """(...) squared distances of points to boxes, zero inside."""
+    gaps = np.maximum(np.maximum(low - points, points - high), 0)
+    squared: FloatArray = np.einsum("...i,...i->...", gaps, gaps)
+    return squared
 
 
 def _place_on_curve(points: FloatArray) -> npt.NDArray[np.int64]:

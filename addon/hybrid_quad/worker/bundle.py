@@ -14,6 +14,8 @@ import numpy.typing as npt
 Arrays = dict[str, npt.NDArray[Any]]
 
 _VALUES = "values"  # the one array that holds text
+_ARRAY = "$array"  # key of the name of an array, in its place
+_NESTED = (np.ndarray, Mapping, list, tuple)
 
 
 def save_bundle(path: Path, arrays: Mapping[str, npt.NDArray[Any]], values: Mapping[str, Any]) -> None:
@@ -46,16 +48,45 @@ def load_bundle(path: Path) -> tuple[Arrays, dict[str, Any]]:
 
 
 def save_fields(path: Path, record: Any) -> None:
-    """Writes a dataclass whose fields are arrays and plain values."""
-    fields = {field.name: getattr(record, field.name) for field in dataclasses.fields(record)}
-    arrays = {name: value for name, value in fields.items() if isinstance(value, np.ndarray)}
-    save_bundle(path, arrays, {name: value for name, value in fields.items() if name not in arrays})
+    """Writes a dataclass whose fields are arrays, plain values, and lists and dictionaries of these."""
+    save_bundle(path, *pack({field.name: getattr(record, field.name) for field in dataclasses.fields(record)}))
 
 
 def load_fields(path: Path) -> dict[str, Any]:
-    """The fields that :func:`save_fields` wrote."""
-    arrays, values = load_bundle(path)
-    return {**arrays, **values}
+    """The fields that :func:`save_fields` wrote; tuples come back as lists."""
+    return unpack(*load_bundle(path))
+
+
+def pack(fields: Mapping[str, Any]) -> tuple[Arrays, dict[str, Any]]:
+    """The arrays among nested lists and dictionaries, each under a name of its own, and the rest, with names in their places."""
+    arrays: Arrays = {}
+
+    def without_arrays(value: Any, place: str) -> Any:
+        if isinstance(value, np.ndarray):
+            arrays[place] = value
+            return {_ARRAY: place}
+        if isinstance(value, Mapping):
+            return {name: without_arrays(each, f"{place}.{name}") for name, each in value.items()}
+        if isinstance(value, (list, tuple)) and any(isinstance(each, _NESTED) for each in value):
+            return [without_arrays(each, f"{place}.{index}") for index, each in enumerate(value)]
+        return value
+
+    return arrays, {name: without_arrays(value, f"field.{name}") for name, value in fields.items()}
+
+
+def unpack(arrays: Arrays, values: Mapping[str, Any]) -> dict[str, Any]:
+    """What :func:`pack` took apart."""
+
+    def with_arrays(value: Any) -> Any:
+        if isinstance(value, dict):
+            if value.keys() == {_ARRAY}:
+                return arrays[value[_ARRAY]]
+            return {name: with_arrays(each) for name, each in value.items()}
+        if isinstance(value, list) and any(isinstance(each, _NESTED) for each in value):
+            return [with_arrays(each) for each in value]
+        return value
+
+    return {name: with_arrays(value) for name, value in values.items()}
 
 
 def _plain(value: Any) -> Any:

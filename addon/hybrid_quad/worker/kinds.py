@@ -10,6 +10,7 @@ from .bundle import load_bundle
 from .limit_request import LimitRequest
 from .preview_request import PreviewRequest
 from .request import RemeshRequest
+from .transfer_request import TransferRequest
 
 Result = TypeVar("Result", covariant=True)
 
@@ -32,7 +33,9 @@ class Request(Protocol[Result]):
         """Does the work."""
 
 
-_KINDS: dict[str, Any] = {request.kind: request for request in (RemeshRequest, PreviewRequest, LimitRequest)}
+_KINDS: dict[str, Any] = {
+    request.kind: request for request in (RemeshRequest, TransferRequest, PreviewRequest, LimitRequest)
+}
 
 
 def load_request(path: Path) -> Request[Any]:

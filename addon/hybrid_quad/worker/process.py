@@ -38,7 +38,6 @@ _GRACE = 5.0  # seconds past its time limit after which a run that should have e
 _LEAVING = 1.0  # seconds that a killed process gets to be gone
 _INTERVAL = 0.01  # seconds between two looks while somebody waits
 _LOG_SHOWN = 4000  # characters
-_FIRST_STAGE = "start"
 
 
 class WorkerSeat:
@@ -119,6 +118,7 @@ class WorkerRun(Generic[Result]):
         temporary_folder: str | None = None,
         command: Sequence[str] | None = None,
         seat: WorkerSeat | None = None,
+        first_stage: str = "start",
     ) -> None:
         """Starts the process and writes the request.
 
@@ -129,13 +129,15 @@ class WorkerRun(Generic[Result]):
             See :class:`WorkerSeat`.
         seat : WorkerSeat, optional
             A process that waits already; it belongs to this run from now on.
+        first_stage : str
+            What the run is said to do until it says so itself.
 
         Raises
         ------
         OSError
             If files cannot be written or the program cannot be started.
         """
-        self.stage = _FIRST_STAGE
+        self.stage = first_stage
         self.fraction = 0.0
         self.is_finished = False
         self._error: Exception | None = None

@@ -48,6 +48,8 @@ def steps() -> Iterator[float]:
         other_object_active,
         finished_in_another_mode,
         undone_meanwhile,
+        read_in_steps,
+        undone_while_read,
         another_file_loaded,
     ):
         print(f"-- {test.__name__.replace('_', ' ')}", flush=True)
@@ -213,6 +215,61 @@ def undone_meanwhile() -> Iterator[float]:
     expect(not bpy.data.objects["Sphere"].hide_get() and "Cube" in bpy.data.objects, "and nothing else")
 
 
+def read_in_steps() -> Iterator[float]:
+    """A large mesh can be edited and left while it is read."""
+    yield from start_with_large_mesh()
+    sphere = bpy.data.objects["Sphere"]
+    with in_view():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.transform.translate(value=(0, 0, 5))
+        bpy.ops.object.mode_set(mode="OBJECT")
+    expect(background_run.current().is_reading, "it was still being read")
+    yield from until_finished()
+    result = bpy.data.objects["Sphere Quads"]
+    expect(result.data.vertices[0].co.z < 2 < sphere.data.vertices[0].co.z, "the result shows what was there")
+    expect(min(len(vertex.groups) for vertex in result.data.vertices) == 1, "all weights came along")
+    expect_said('"Sphere" was changed')
+    expect(not own_meshes(), "no mesh of ours is left")
+
+
+def undone_while_read() -> Iterator[float]:
+    yield from start_with_large_mesh()
+    with in_view():
+        bpy.ops.ed.undo()
+    yield from until_finished()
+    expect("Sphere Quads" not in bpy.data.objects, "nothing comes of what was undone while it was read")
+    expect_said("undone")
+    expect(not own_meshes(), "no mesh of ours is left")
+    press("ESC")
+    yield 0.3
+
+
+def start_with_large_mesh() -> Iterator[float]:
+    """Begins to read a sphere with weights that takes its time."""
+    sphere = bpy.data.objects["Sphere"]
+    modifier = sphere.modifiers.new("Fine", "SUBSURF")
+    modifier.levels = 4
+    with in_view():
+        activate(sphere)
+        bpy.ops.object.modifier_apply(modifier="Fine")
+    sphere.vertex_groups.new(name="All").add(list(range(len(sphere.data.vertices))), 0.5, "REPLACE")
+    print(f"{len(sphere.data.polygons)} faces", flush=True)
+    with in_view():
+        bpy.ops.ed.undo_push(message="large")
+        sphere.location.x = 1
+        bpy.ops.ed.undo_push(message="moved")
+    yield from start(300)
+    run = background_run.current()
+    while run.is_reading and not own_meshes():
+        yield 0.0
+    expect(run.is_reading, "it is being read")
+
+
+def own_meshes() -> list[str]:
+    return [mesh.name for mesh in bpy.data.meshes if mesh.name.startswith(".hybrid_quad")]
+
+
 def another_file_loaded() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     run = background_run.current()
@@ -249,7 +306,7 @@ def start(quads: int, mode: str = "NEW") -> Iterator[float]:
         expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"}, "a run begins")
     run = background_run.current()
     began = time.monotonic()
-    while quads == LONG_RUN_QUADS and run.worker.fraction == 0 and time.monotonic() - began < 60:
+    while quads == LONG_RUN_QUADS and run.fraction == 0 and time.monotonic() - began < 60:
         yield 0.05
     expect(not run.is_finished, "and goes on")
 

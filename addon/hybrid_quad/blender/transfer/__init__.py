@@ -1,5 +1,6 @@
-"""What a result takes along from its source: a file for each kind, all over one correspondence of the two surfaces.
+"""What a result takes along from its source: a file for each kind.
 
-`layers.read` copies what a source carries, before the run; `layers.write` puts it on the result, after it. `object_data`
+`layers.read` copies what a source carries, before the run. What the result gets of it is computed from arrays alone
+(`layers.request_of`, core/transfer), by a worker process where there is one; `layers.write` puts it on the result. `object_data`
 does what belongs to the object.
 """

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
+from ...core.transfer.layers import Layer
+from .. import edge_marks
 from . import buffers
-from .correspondence import Correspondence
 
 
 class _Storage(NamedTuple):
@@ -81,8 +82,6 @@ class MeshAttributes(NamedTuple):
     Attributes
     ----------
     each : tuple of MeshAttribute
-    edges : (k, 2) int32
-        The mesh's, if any attribute is of edges.
     active_color, rendered_color : str
         Names of color attributes; empty without.
     unknown : tuple of str
@@ -90,7 +89,6 @@ class MeshAttributes(NamedTuple):
     """
 
     each: tuple[MeshAttribute, ...]
-    edges: Any
     active_color: str
     rendered_color: str
     unknown: tuple[str, ...]
@@ -111,32 +109,41 @@ def read(mesh: bpy.types.Mesh, *, colors: bool, others: bool) -> MeshAttributes:
     active, rendered = _color_names(mesh) if colors else ("", "")
     return MeshAttributes(
         tuple(MeshAttribute(each.name, each.data_type, each.domain, _values(each)) for each in known),
-        buffers.read(mesh.edges, "vertices", np.int32, 2),
         active,
         rendered,
         tuple(attribute.name for attribute in asked if attribute.data_type not in STORAGES),
     )
 
 
-def write(mesh: bpy.types.Mesh, attributes: MeshAttributes, correspondence: Correspondence) -> None:
+def carried(attributes: MeshAttributes) -> tuple[Layer, ...]:
+    """What of some attributes is computed for a result.
+
+    Numbers, vectors and colors of vertices and corners can lie between the source's; what cannot be mixed is that of the nearest one.
+    """
+    return tuple(
+        Layer(each.domain, _numbers(each.values)[0], STORAGES[each.data_type].is_continuous, _SAME)
+        for each in attributes.each
+    )
+
+
+def write(mesh: bpy.types.Mesh, attributes: MeshAttributes, carried_values: tuple[Any, ...], edges: Any) -> None:
     """Gives a mesh these attributes.
 
-    Numbers, vectors and colors of vertices and corners are linear in the source's triangles; what cannot be mixed is that of the
-    nearest vertex or corner. Of faces it is the value at the face's middle. Edges have the value of the source
-    edge along which they run; zero where there is none.
+    Parameters
+    ----------
+    carried_values : tuple of arrays
+        What became of :func:`carried` on the mesh.
+    edges : (E, 2) int32, or None
+        The vertex pairs that values of edges belong to, in order.
     """
-    followed = None
-    for source in attributes.each:
+    for source, numbers in zip(attributes.each, carried_values, strict=True):
+        values = numbers
         if source.domain == "EDGE":
-            if followed is None:
-                edges = buffers.read(mesh.edges, "vertices", np.int32, 2)
-                followed = correspondence.followed(edges, correspondence.source.points, attributes.edges)
-            values = source.values[followed]
-            values[followed < 0] = type(values.flat[0])()
-        else:
-            values = _values_on_result(source, correspondence)
+            values = np.empty_like(numbers)
+            values[edge_marks.indices_of(mesh, edges)] = numbers
+        texts = _numbers(source.values)[1]
         target = mesh.attributes.new(source.name, source.data_type, source.domain)
-        _set_values(target, values)
+        _set_values(target, values if texts is None else texts[values])
     names = [layer.name for layer in mesh.color_attributes]
     if attributes.active_color in names:
         mesh.color_attributes.active_color_index = names.index(attributes.active_color)
@@ -144,26 +151,16 @@ def write(mesh: bpy.types.Mesh, attributes: MeshAttributes, correspondence: Corr
         mesh.color_attributes.render_color_index = names.index(attributes.rendered_color)
 
 
-def _values_on_result(source: MeshAttribute, correspondence: Correspondence) -> Any:
-    surface, storage = correspondence.source, STORAGES[source.data_type]
-    if source.domain == "FACE":
-        return source.values[correspondence.polygons]
-    if source.domain == "POINT":
-        places, indices = correspondence.vertices, surface.vertices
-    else:
-        cut_by = _as_numbers(source.values)
-        places = correspondence.corners(correspondence.walk.walls(cut_by, _SAME)).places
-        indices = surface.corners
-    if storage.is_continuous:
-        return places.values(indices, source.values.astype(np.float64)).astype(storage.dtype)
-    return source.values[places.nearest(indices)]
-
-
-def _as_numbers(values: Any) -> Any:
-    """(k, d) numbers that are the same where the values are."""
-    if values.dtype == object:
-        values = np.unique(values.astype(bytes), return_inverse=True)[1]
-    return values.reshape(len(values), -1).astype(np.float64)
+def _numbers(values: Any) -> tuple[Any, Any]:
+    """Values as numbers; for texts with the texts that they stand for, the empty one for 0."""
+    if values.dtype != object:
+        return values, None
+    first = values.tolist()
+    texts = list(dict.fromkeys([type(first[0])(), *first]))
+    place = {text: number for number, text in enumerate(texts)}
+    table = np.empty(len(texts), object)
+    table[:] = texts
+    return np.array([place[text] for text in first], np.int64), table
 
 
 def _is_color(attribute: Any) -> bool:

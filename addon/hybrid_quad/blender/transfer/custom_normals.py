@@ -9,8 +9,8 @@ import numpy as np
 
 from ...core.corner_fans import fans_of_corners
 from ...core.mesh_arrays import FloatArray, Polygons, unit_vectors
+from ...core.transfer.layers import Layer
 from . import buffers
-from .correspondence import Correspondence
 
 _ATTRIBUTE = "custom_normal"
 _SPLIT = 1e-4  # difference of normals above which an edge is sharp
@@ -46,16 +46,16 @@ def read(mesh: bpy.types.Mesh) -> CustomNormals | None:
     return CustomNormals("CORNER", False, _vectors(mesh.corner_normals, "vector"))
 
 
-def write(mesh: bpy.types.Mesh, source: CustomNormals, correspondence: Correspondence) -> None:
-    """Gives a mesh these normals, linear in the source's triangles; split only where edges are marked sharp."""
-    surface = correspondence.source
-    if source.domain == "POINT":
-        values = correspondence.vertices.values(surface.vertices, source.values)
-    elif source.domain == "FACE":
-        values = source.values[correspondence.polygons]
-    else:
-        places = correspondence.corners(correspondence.walk.walls(source.values, _SPLIT))
-        values = _even_in_fans(mesh, unit_vectors(places.values(surface.corners, source.values, is_extended=False)))
+def carried(source: CustomNormals) -> Layer:
+    """What is computed for a result."""
+    return Layer(source.domain, source.values, True, _SPLIT)
+
+
+def write(mesh: bpy.types.Mesh, source: CustomNormals, carried_values: FloatArray) -> None:
+    """Gives a mesh normals, of which :func:`carried` has become `carried_values`; split only where edges are marked sharp."""
+    values = carried_values
+    if source.domain == "CORNER":
+        values = _even_in_fans(mesh, unit_vectors(values))
     values = unit_vectors(values)
     if source.is_free:
         attribute = mesh.attributes.new(_ATTRIBUTE, "FLOAT_VECTOR", source.domain)

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
+from ...core.transfer.layers import Layer
 from . import buffers
-from .correspondence import Correspondence
 
 _FACE_SETS = ".sculpt_face_set"  # from Blender 3.5 on; before, Python cannot see face sets
 _FREESTYLE = "freestyle_face"
@@ -42,20 +42,23 @@ def read(mesh: bpy.types.Mesh, kinds: frozenset[str]) -> FaceMarks:
     )
 
 
-def write(mesh: bpy.types.Mesh, source: FaceMarks, correspondence: Correspondence) -> None:
-    """Gives each face what the source has at its middle."""
-    if all(values is None or (values == values[0]).all() for values in source):
-        nearest = np.zeros(len(mesh.polygons), np.int64)
-    else:
-        nearest = correspondence.polygons
-    buffers.write(mesh.polygons, "use_smooth", source.is_smooth[nearest])
-    if source.materials is not None:
-        buffers.write(mesh.polygons, "material_index", source.materials[nearest])
-    if source.face_sets is not None:
+def carried(source: FaceMarks) -> tuple[Layer, ...]:
+    """What is computed for a result."""
+    return tuple(Layer("FACE", values) for values in source if values is not None)
+
+
+def write(mesh: bpy.types.Mesh, source: FaceMarks, carried_values: tuple[Any, ...]) -> None:
+    """Gives each face what :func:`carried` has become there."""
+    left = iter(carried_values)
+    marks = FaceMarks(*(None if values is None else next(left) for values in source))
+    buffers.write(mesh.polygons, "use_smooth", marks.is_smooth)
+    if marks.materials is not None:
+        buffers.write(mesh.polygons, "material_index", marks.materials)
+    if marks.face_sets is not None:
         attribute = mesh.attributes.new(_FACE_SETS, "INT", "FACE")
-        buffers.write(attribute.data, "value", source.face_sets[nearest])
+        buffers.write(attribute.data, "value", marks.face_sets)
     if source.freestyle is not None and source.freestyle.any():
-        _write_freestyle(mesh, source.freestyle[nearest])
+        _write_freestyle(mesh, marks.freestyle)
 
 
 def _attribute(mesh: bpy.types.Mesh, name: str, data_type: str, dtype: Any) -> Any:

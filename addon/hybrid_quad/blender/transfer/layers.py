@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import bpy
 
@@ -11,7 +12,10 @@ from ...core.mesh_arrays import FloatArray
 from ...core.part_weld import PartResult
 from ...core.remesh import RemeshResult
 from ...core.surface_places import TriangleMesh
+from ...worker.transfer_request import TransferredData, TransferRequest
 from .. import edge_marks
+from ..own_mesh import OwnMesh
+from ..steps import Steps
 from . import (
     attributes,
     buffers,
@@ -25,7 +29,6 @@ from . import (
     vertex_groups,
 )
 from . import vertex_marks as vertex_weights
-from .correspondence import Correspondence
 from .rest import Rest
 
 if TYPE_CHECKING:
@@ -67,22 +70,48 @@ class SourceLayers:
         return said + [f'Attribute "{name}" is left behind: its type is not known' for name in self.attributes.unknown]
 
 
-def read(rest: Rest, mesh: bpy.types.Mesh, linear: FloatArray, kinds: frozenset[str]) -> SourceLayers:
+class LayerOrder(NamedTuple):
+    """What of an object's mesh is to be read, and what its layers are called; nothing of Blender's own.
+
+    Attributes
+    ----------
+    kinds : frozenset of str
+        What is asked for.
+    applied : tuple of str
+        Names of the object's modifiers that are part of the mesh.
+    groups : GroupList or None
+    """
+
+    kinds: frozenset[str]
+    applied: tuple[str, ...]
+    groups: vertex_groups.GroupList | None
+
+    @classmethod
+    def of(cls, rest: Rest, kinds: frozenset[str]) -> LayerOrder:
+        """What is asked for of an object."""
+        return cls(kinds, rest.applied, vertex_groups.list_of(rest.shown) if "vertex_groups" in kinds else None)
+
+
+def read(order: LayerOrder, mesh_of: Callable[[], bpy.types.Mesh], linear: FloatArray) -> Steps[SourceLayers]:
     """What the evaluated mesh of an object carries, all but the shape keys.
 
     Parameters
     ----------
     linear : (3, 3) float64
         Object space to the run's space.
-    kinds : frozenset of str
-        What is asked for.
     """
+    kinds, mesh = order.kinds, mesh_of()
     # First of all, as the other layers' arrays are then of the mesh as it stays.
     normals = custom_normals.read(mesh) if "custom_normals" in kinds else None
-    return SourceLayers(
+    if normals is not None:
+        yield
+    triangles = buffers.triangles_of(mesh_of(), linear)
+    yield
+    mesh = mesh_of()
+    layers = SourceLayers(
         kinds=kinds,
-        applied=rest.applied,
-        triangles=buffers.triangles_of(mesh, linear),
+        applied=order.applied,
+        triangles=triangles,
         materials=materials.read(mesh) if "materials" in kinds else (),
         faces=face_marks.read(mesh, kinds),
         uv_maps=uv_maps.read(mesh) if "uv_maps" in kinds else (),
@@ -90,49 +119,75 @@ def read(rest: Rest, mesh: bpy.types.Mesh, linear: FloatArray, kinds: frozenset[
         mask=mask.read(mesh) if "mask" in kinds else None,
         normals=normals,
         vertex_marks=vertex_weights.read(mesh, kinds),
-        groups=vertex_groups.read(rest.shown, mesh) if "vertex_groups" in kinds else None,
+        groups=None,
+    )
+    if order.groups is None:
+        return layers
+    yield
+    return replace(layers, groups=(yield from vertex_groups.read(order.groups, mesh_of)))
+
+
+def request_of(task: RemeshTask, result: RemeshResult) -> TransferRequest:
+    """What is to be computed before :func:`write`, here or in another process: all that needs no Blender."""
+    source, layers = task.source, task.source.layers
+    assert layers is not None
+    has_seams = "seams" in layers.kinds
+    return TransferRequest(
+        surface=layers.triangles,
+        part=result.part if isinstance(result, PartResult) else None,
+        points=result.vertices,
+        quads=result.quads[:, ::-1] if source.is_mirrored else result.quads,
+        feature_edges=result.feature_edges,
+        source_edges=feature_marks.carried(task, layers.kinds),
+        layers={
+            "mask": () if layers.mask is None else (mask.carried(layers.mask),),
+            "faces": face_marks.carried(layers.faces),
+            "uv_maps": uv_maps.carried(layers.uv_maps),
+            "attributes": attributes.carried(layers.attributes),
+            "keys": () if layers.keys is None else shape_keys.carried(layers.keys),
+            "normals": () if layers.normals is None else (custom_normals.carried(layers.normals),),
+        },
+        seam_map=next((number for number, each in enumerate(layers.uv_maps) if each.is_active and has_seams), None),
+        vertex_marks=tuple(mark.marked for mark in layers.vertex_marks),
+        groups=None if layers.groups is None else layers.groups.weights,
     )
 
 
-def with_keys(layers: SourceLayers, rest: Rest, depsgraph: bpy.types.Depsgraph, base: FloatArray) -> SourceLayers:
-    """`layers` with the shape keys; evaluates the object anew, so that its former evaluated mesh is gone.
+def write(own: OwnMesh, task: RemeshTask, result: RemeshResult, carried: TransferredData) -> Steps[None]:
+    """Puts what a task's source carries on a mesh that has the result's quads and nothing else.
 
     Parameters
     ----------
-    base : (n, 3) float
-        Vertices of the mesh in object space.
+    carried : TransferredData
+        What became of :func:`request_of`.
     """
-    return replace(layers, keys=shape_keys.read(rest, depsgraph, base)) if rest.has_keys else layers
-
-
-def write(obj: bpy.types.Object, task: RemeshTask, result: RemeshResult) -> None:
-    """Puts what a task's source carries on an object whose mesh has the result's quads and nothing else."""
-    layers, mesh = task.source.layers, obj.data
+    layers, mesh, values = task.source.layers, own.mesh(), carried.layers
     assert layers is not None
-    quads = result.quads[:, ::-1] if task.source.is_mirrored else result.quads
-    triangles = layers.triangles
-    if isinstance(result, PartResult):  # new faces have what those had that they replace, and nothing of the rest
-        triangles = triangles.of_polygons(result.part)
-    correspondence = Correspondence(triangles, result.vertices, quads)
     if layers.mask is not None:
-        mask.write(mesh, layers.mask, correspondence)
-    vertex_weights.write(mesh, layers.vertex_marks, correspondence)
+        mask.write(mesh, *values["mask"])
+    vertex_weights.write(mesh, layers.vertex_marks, carried.vertex_marks)
     materials.write(mesh, layers.materials)
-    face_marks.write(mesh, layers.faces, correspondence)
-    edge_marks.write(mesh, *feature_marks.on_result(task, result, layers.kinds))
-    uv_maps.write(mesh, layers.uv_maps, correspondence)
-    for source_map in layers.uv_maps:
-        if source_map.is_active and "seams" in layers.kinds:
-            feature_marks.mark_cuts(mesh, task, source_map, correspondence)
-    attributes.write(mesh, layers.attributes, correspondence)
+    face_marks.write(mesh, layers.faces, values["faces"])
+    edge_marks.write(mesh, carried.marked_edges, carried.edge_values)
+    uv_maps.write(mesh, layers.uv_maps, values["uv_maps"])
+    if carried.seams is not None:
+        feature_marks.add_seams(mesh, carried.seams)
+    attributes.write(mesh, layers.attributes, values["attributes"], carried.edges)
     if layers.groups is not None:
-        vertex_groups.write(obj, layers.groups, correspondence)
+        assert carried.groups is not None
+        yield
+        yield from vertex_groups.write(own, layers.groups, carried.groups)
     losses = layers.losses
-    if layers.keys is not None and mesh.shape_keys is not None:
-        shape_keys.write(mesh, layers.keys, correspondence)
-    elif layers.keys is not None:
-        losses.append("Shape keys are left behind: the source lost its own during the run")
+    if layers.keys is not None:
+        yield
+        mesh = own.mesh()
+        if mesh.shape_keys is not None:
+            shape_keys.write(mesh, layers.keys, values["keys"])
+        else:
+            losses.append("Shape keys are left behind: the source lost its own during the run")
     if layers.normals is not None:
-        custom_normals.write(mesh, layers.normals, correspondence)
-    result.report["warnings"].extend(losses)
-    result.report["transfer"] = {"vertices_against": correspondence.vertices_against}
+        yield
+        custom_normals.write(own.mesh(), layers.normals, *values["normals"])
+    told = result.report["warnings"]  # by a former placing of the same result too
+    told += [each for each in losses if each not in told]
+    result.report["transfer"] = {"vertices_against": carried.vertices_against}

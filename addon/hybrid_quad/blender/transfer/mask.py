@@ -8,8 +8,8 @@ import bmesh
 import bpy
 import numpy as np
 
+from ...core.transfer.layers import Layer
 from . import buffers
-from .correspondence import Correspondence
 
 _ATTRIBUTE = ".sculpt_mask"  # from Blender 4.1 on
 
@@ -22,10 +22,14 @@ def read(mesh: bpy.types.Mesh) -> Any:
     return None if attribute is None else buffers.read(attribute.data, "value", np.float32)
 
 
-def write(mesh: bpy.types.Mesh, source: Any, correspondence: Correspondence) -> None:
-    """Gives a mesh this mask, linear in the source's triangles."""
-    values = correspondence.vertices.values(correspondence.source.vertices, source.astype(np.float64))
-    buffers.write(_items(mesh), "value", values.astype(np.float32))
+def carried(source: Any) -> Layer:
+    """What is computed for a result."""
+    return Layer("POINT", source, True)
+
+
+def write(mesh: bpy.types.Mesh, values: Any) -> None:
+    """Gives a mesh this mask (n,)."""
+    buffers.write(_items(mesh), "value", values)
 
 
 def _items(mesh: bpy.types.Mesh) -> Any:

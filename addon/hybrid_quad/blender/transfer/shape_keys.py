@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 
 from ...core.mesh_arrays import FloatArray
+from ...core.transfer.layers import Layer
 from . import buffers
-from .correspondence import Correspondence
 from .rest import Rest
 
 
@@ -46,14 +46,17 @@ def read(rest: Rest, depsgraph: bpy.types.Depsgraph, base: FloatArray) -> ShapeK
     return ShapeKeys(fitting, tuple(name for name in shapes if name not in fitting))
 
 
-def write(mesh: bpy.types.Mesh, source: ShapeKeys, correspondence: Correspondence) -> None:
-    """Gives the keys of a mesh, which has as many as it should, their shapes."""
+def carried(source: ShapeKeys) -> tuple[Layer, ...]:
+    """What is computed for a result."""
+    return tuple(Layer("POINT", offsets.astype(np.float64), True) for offsets in source.offsets.values())
+
+
+def write(mesh: bpy.types.Mesh, source: ShapeKeys, carried_values: tuple[FloatArray, ...]) -> None:
+    """Gives the keys of a mesh, which has as many as it should, the shapes of which :func:`carried` has become the offsets."""
     base = buffers.read(mesh.vertices, "co", np.float32, 3)
+    offsets = dict(zip(source.offsets, carried_values, strict=True))
     for key in mesh.shape_keys.key_blocks:
-        shape = base
-        if key.name in source.offsets:
-            offsets = source.offsets[key.name].astype(np.float64)
-            shape = base + correspondence.vertices.values(correspondence.source.vertices, offsets)
+        shape = base + offsets[key.name] if key.name in offsets else base
         buffers.write(key.data, "co", shape.astype(np.float32))
 
 

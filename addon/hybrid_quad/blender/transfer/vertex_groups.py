@@ -1,16 +1,21 @@
-"""Vertex groups: weights that stay normalized and of as few groups a vertex as they were."""
+"""Vertex groups and who is in them."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
 import numpy.typing as npt
 
-from ...core.influences import with_fewer_influences
-from ...core.surface_places import Indices
-from .correspondence import Correspondence
+from ...core.transfer.groups import GroupMembers, GroupWeights
+from ..own_mesh import OwnMesh
+from ..steps import Steps
+
+# In one step.
+_VERTICES = 40_000  # asked
+_WEIGHTS = 60_000  # set
 
 
 class VertexGroups(NamedTuple):
@@ -23,90 +28,109 @@ class VertexGroups(NamedTuple):
         Which is active, or -1.
     locked : (g,) bool
         Whose weights are locked.
+    weights : GroupWeights
+    """
+
+    names: tuple[str, ...]
+    active: int
+    locked: npt.NDArray[np.bool_]
+    weights: GroupWeights
+
+
+class GroupList(NamedTuple):
+    """The vertex groups of an object, without weights.
+
+    Attributes
+    ----------
+    names, active, locked
+        As of :class:`VertexGroups`.
     deforming : (g,) bool
         Which are named like a bone that deforms.
-    vertices, groups : (k,) int64
-        Who is in which.
-    weights : (k,) float64
-    vertex_count : int
     """
 
     names: tuple[str, ...]
     active: int
     locked: npt.NDArray[np.bool_]
     deforming: npt.NDArray[np.bool_]
-    vertices: Indices
-    groups: Indices
-    weights: npt.NDArray[np.float64]
-    vertex_count: int
 
 
-def read(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> VertexGroups:
-    """The groups of an object with the weights of its evaluated mesh."""
+def list_of(obj: bpy.types.Object) -> GroupList:
+    """The groups of an object."""
     names = tuple(group.name for group in obj.vertex_groups)
     bones = _deforming_bones(obj)
-    vertices = mesh.vertices
-    counts = np.fromiter((len(vertex.groups) for vertex in vertices), np.int64, len(vertices))
-    members = [(item.group, item.weight) for vertex in vertices for item in vertex.groups] if counts.any() else []
-    table = np.array(members, np.float64).reshape(-1, 2)
-    owner, group = np.repeat(np.arange(len(vertices)), counts), table[:, 0].astype(np.int64)
-    known = (group >= 0) & (group < len(names))
-    return VertexGroups(
+    return GroupList(
         names,
         obj.vertex_groups.active_index if names else -1,
         np.array([group.lock_weight for group in obj.vertex_groups], np.bool_),
         np.array([name in bones for name in names], np.bool_),
-        owner[known],
-        group[known],
-        table[known, 1],
-        len(vertices),
     )
 
 
-def write(obj: bpy.types.Object, source: VertexGroups, correspondence: Correspondence) -> None:
-    """Gives an object these groups, with weights linear in the source's triangles.
+def read(groups: GroupList, mesh_of: Callable[[], bpy.types.Mesh]) -> Steps[VertexGroups]:
+    """Groups with the weights of an evaluated mesh, some vertices a step, as Python can only ask them one by one."""
+    total = len(mesh_of().vertices)
+    counts, numbers, weights = [], [], []
+    for begin in range(0, total if groups.names else 0, _VERTICES):
+        if begin:
+            yield
+        end = min(begin + _VERTICES, total)
+        own, table = _members(mesh_of().vertices[begin:end])
+        counts.append(own)
+        numbers.append(table[0::2].astype(np.int64))
+        weights.append(table[1::2])
+    owner = np.repeat(np.arange(total), np.concatenate(counts)) if counts else np.zeros(0, np.int64)
+    group = np.concatenate(numbers) if numbers else np.zeros(0, np.int64)
+    weight = np.concatenate(weights) if weights else np.zeros(0)
+    known = (group >= 0) & (group < len(groups.names))
+    return VertexGroups(
+        groups.names,
+        groups.active,
+        groups.locked,
+        GroupWeights(groups.deforming, owner[known], group[known], weight[known], total),
+    )
 
-    A vertex is in a group where a vertex of the triangle it lies in is, as far as that has a share in it.
-    """
-    weights, is_member = weights_on_result(source, correspondence)
-    obj.vertex_groups.clear()
-    for group, name in enumerate(source.names):
-        target = obj.vertex_groups.new(name=name)
-        target.lock_weight = bool(source.locked[group])
-        members = np.flatnonzero(is_member[:, group])
-        values, inverse = np.unique(weights[members, group].astype(np.float32), return_inverse=True)
-        order = np.argsort(inverse.reshape(-1), kind="stable")
-        ends = np.cumsum(np.bincount(inverse.reshape(-1), minlength=len(values)))
-        for value, some in zip(values.tolist(), np.split(members[order], ends[:-1]), strict=False):
-            target.add(some.tolist(), value, "REPLACE")
-    if source.active >= 0:
-        obj.vertex_groups.active_index = source.active
+
+def _members(vertices: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
+    """(k,) in how many groups each of some vertices is, and which group and with what weight, one after the other."""
+    counts = np.zeros(len(vertices), np.int64)
+    table: list[float] = []
+    for index, vertex in enumerate(vertices):
+        before = len(table)
+        for item in vertex.groups:
+            table += (item.group, item.weight)
+        counts[index] = (len(table) - before) // 2
+    return counts, np.array(table, np.float64)
 
 
-def weights_on_result(
-    source: VertexGroups, correspondence: Correspondence
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-    """(n, g) weights of a result's vertices, and who is a member."""
-    places, indices = correspondence.vertices, correspondence.source.vertices
-    count = len(source.names)
-    weights = np.zeros((len(places.triangles), count))
-    is_member = np.zeros((len(places.triangles), count), np.bool_)
-    order = np.argsort(source.groups, kind="stable")
-    ends = np.searchsorted(source.groups[order], np.arange(count + 1))
-    for group in range(count):
-        own = order[ends[group] : ends[group + 1]]
-        column = np.zeros((source.vertex_count, 2))
-        column[source.vertices[own], 0] = source.weights[own]
-        column[source.vertices[own], 1] = 1
-        mixed = places.values(indices, column)
-        weights[:, group], is_member[:, group] = mixed[:, 0], mixed[:, 1] > 0
-    deforming = np.flatnonzero(source.deforming)
-    if len(deforming):
-        most = np.bincount(source.vertices[source.deforming[source.groups]], minlength=1).max()
-        kept = with_fewer_influences(weights[:, deforming], int(most))
-        is_member[:, deforming] &= (kept > 0) | (weights[:, deforming] == 0)
-        weights[:, deforming] = kept
-    return np.clip(weights, 0, 1), is_member
+def write(own: OwnMesh, source: VertexGroups, members: tuple[GroupMembers, ...]) -> Steps[None]:
+    """Gives a mesh these groups, each with its members, some weights a step, as Python can only set one at a time."""
+    with own.held() as holder:
+        holder.vertex_groups.clear()
+        for name, is_locked in zip(source.names, source.locked.tolist(), strict=True):
+            holder.vertex_groups.new(name=name).lock_weight = is_locked
+        if source.active >= 0:
+            holder.vertex_groups.active_index = source.active
+    left = _WEIGHTS
+    for index, group in enumerate(members):
+        begin = 0
+        while begin < len(group.weights):
+            if left == 0:
+                yield
+                left = _WEIGHTS
+            end = min(begin + left, len(group.weights))
+            with own.held() as holder:
+                _add_members(holder.vertex_groups[index], group, begin, end)
+            left -= end - begin
+            begin = end
+
+
+def _add_members(target: bpy.types.VertexGroup, group: GroupMembers, begin: int, end: int) -> None:
+    """Adds the vertices of some of a group's weights."""
+    first = int(group.ends[begin - 1]) if begin else 0
+    vertices, at = group.vertices[first : group.ends[end - 1]].tolist(), 0
+    for weight, last in zip(group.weights[begin:end].tolist(), (group.ends[begin:end] - first).tolist(), strict=True):
+        target.add(vertices[at:last], weight, "REPLACE")
+        at = last
 
 
 def _deforming_bones(obj: bpy.types.Object) -> set[str]:

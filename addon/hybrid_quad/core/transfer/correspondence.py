@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...core.mesh_arrays import FloatArray, IntArray, unit_vectors
-from ...core.surface_places import Indices, Places, TriangleMesh, places_in
-from ...core.surface_walk import BoolArray, CornerPlaces, SurfaceWalk
+from ..mesh_arrays import FloatArray, IntArray, unit_vectors
+from ..surface_places import Indices, Places, TriangleMesh, places_in
+from ..surface_walk import BoolArray, CornerPlaces, SurfaceWalk
 from .nearest import NearestEdges, NearestTriangles
 
 # An edge follows another one that passes within this share of its length and runs along it.
@@ -34,7 +34,7 @@ class Correspondence:
         self.quads = quads.astype(np.int64)
         corners = points[self.quads]
         self._middles = corners.mean(axis=1)
-        self._normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        self._normals = unit_vectors(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
         self._radii = np.linalg.norm(corners - self._middles[:, None], axis=2).max(axis=1)
         self._corner_places: dict[bytes, CornerPlaces] = {}
 
@@ -99,10 +99,12 @@ class Correspondence:
 
     @cached_property
     def _vertex_normals(self) -> FloatArray:
-        normals, units = np.zeros_like(self.points), unit_vectors(self._normals)
+        """(n, 3) means of the quads' normals: short where these cancel out."""
+        normals = np.zeros_like(self.points)
         for corner in self.quads.T:
-            np.add.at(normals, corner, units)
-        return normals
+            np.add.at(normals, corner, self._normals)
+        uses = np.bincount(self.quads.ravel(), minlength=len(self.points))
+        return normals / np.maximum(uses, 1)[:, None]
 
     @cached_property
     def _nearest(self) -> NearestTriangles:
