@@ -68,9 +68,13 @@ def steps() -> Iterator[float]:
     expect(not source.hide_get(), "and shows the source again")
 
     with in_view():
-        again = bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT", True)  # with an undo step, as a button has
-        expect(again == {"FINISHED"}, "the same again is there at once")
-        expect("Sphere Quads" in bpy.data.objects, "as it was")
+        # With an undo step, as a button has.
+        expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}, "the same once more")
+    run = background_run.current()
+    yield from until_finished()
+    expect(run.is_known, "no quads are made again")
+    expect("Sphere Quads" in bpy.data.objects, "the result is as it was")
+    with in_view():
         bpy.ops.ed.undo()
     yield 0.5
     expect("Sphere Quads" not in bpy.data.objects, "and is one undo step, too")
