@@ -75,6 +75,15 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const ImproveOptions& options, const QuadNumber& number, const RunContext& context,
                        const SurfaceIndex* whole = nullptr);
 
+/// Against quads that are flawed when all else is done: a side of one is split in three, with both quads at it, where that leaves
+/// fewer. Mostly sides that cut a feature curve's bend off. Each split adds two to six quads; all other vertices stay, unless it
+/// takes mending.
+/// \param agreement  of flawed_quads  \param whole  as for improve_quads
+/// \returns sides split
+int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
+                       const SurfaceIndex* whole = nullptr);
+
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by a
 /// ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).

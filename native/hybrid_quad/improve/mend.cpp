@@ -107,7 +107,7 @@ class Mender {
 }  // namespace
 
 MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
-                       const RunContext& context) {
+                       const RunContext& context, bool and_poor) {
   constexpr int kRounds = 3;
   Mender mender(piece, smoother, whole, enough_area);
   // Rounds over all quads, until one changes nothing.
@@ -124,7 +124,7 @@ MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex&
   };
   MendReport report;
   report.mended = in_rounds([&](int q) { return mender.is_flawed(q) && mender.mend(q); });
-  report.placed = in_rounds([&](int q) { return mender.is_poor(q) && mender.find_places(q); });
+  if (and_poor) report.placed = in_rounds([&](int q) { return mender.is_poor(q) && mender.find_places(q); });
   return report;
 }
 

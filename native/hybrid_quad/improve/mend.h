@@ -13,10 +13,10 @@ struct MendReport {
 };
 
 /// The last resort for quads that are flawed (quality.h) when all else is done: other positions or other neighbours, whatever
-/// valences and shapes suffer, if only fewer quads around are flawed. Then other positions around quads whose
+/// valences and shapes suffer, if only fewer quads around are flawed. Then, if `and_poor`, other positions around quads whose
 /// scaled Jacobian is below FlawMeasure::kFair.
 /// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
 MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
-                       const RunContext& context);
+                       const RunContext& context, bool and_poor = true);
 
 }  // namespace hybrid_quad

@@ -5,6 +5,7 @@
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/finishing.h"
 #include "hybrid_quad/pipeline/missed_loops.h"
 #include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -70,6 +71,16 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
   return out;
 }
 
+/// What no pass puts right. Not where guides follow the quads' edges.
+void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
+                  ComponentResult& result, StageClock& clock, const RunContext& context) {
+  const Finishing finishing(plan, whole, wishes, options);
+  const RunContext improving = context.in_stage("improve", 0.97, 0.97);
+  result.repairs.split_sides += clock.measure("improve", [&] { return finishing.split_flawed(result.mesh, improving); });
+  result.flawed_quads = static_cast<int>(finishing.flawed(result.mesh, context.threads).size());
+  result.doubtful_quads = static_cast<int>(finishing.doubtful(result.mesh, context.threads).size());
+}
+
 /// Passes until one has no flawed quads; the best of them.
 ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
@@ -132,6 +143,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
+  if (best.flawed_quads > 0 && planned.guides.empty()) split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
   return best;
 }

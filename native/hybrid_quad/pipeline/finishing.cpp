@@ -53,8 +53,16 @@ void Finishing::make_mirrorable(QuadMesh& mesh, const RunContext& context) const
 }
 
 std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
-  return flawed_quads(mesh, whole_, {kEnough * whole_.mesh().total_area(), true}, threads);
+  return flawed_quads(mesh, whole_, agreement(), threads);
 }
+
+int Finishing::split_flawed(QuadMesh& mesh, const RunContext& context) const {
+  const int splits = split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, agreement(), context, &whole_);
+  if (splits > 0) order_feature_edges(mesh, plan_.mesh, plan_.features);
+  return splits;
+}
+
+Agreement Finishing::agreement() const { return {kEnough * whole_.mesh().total_area(), true}; }
 
 std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const { return flawed_quads(mesh, whole_, {improve_.enough_area}, threads); }
 

@@ -17,6 +17,8 @@ class Finishing {
 
   const ImproveOptions& options() const { return improve_; }
   ImproveReport improve(QuadMesh& mesh, const RunContext& context) const;
+  /// The last resort for flawed quads (split_flawed_quads). \returns sides split
+  int split_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 
@@ -26,6 +28,8 @@ class Finishing {
   std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
 
  private:
+  Agreement agreement() const;
+
   const ComponentPlan& plan_;
   const SurfaceIndex& whole_;
   const RemeshOptions& asked_;

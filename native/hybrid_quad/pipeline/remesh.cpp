@@ -152,6 +152,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   opened_straight_quads += other.opened_straight_quads;
   mended_places += other.mended_places;
   poor_places += other.poor_places;
+  split_sides += other.split_sides;
   opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;
