@@ -16,6 +16,7 @@ import hybrid_quad
 from hybrid_quad.blender import background_run, operators
 from hybrid_quad.blender.remesh_task import prepare_task
 from hybrid_quad.blender.source_track import SourceTrack
+from hybrid_quad.core.stage_names import WORDS, in_words
 from hybrid_quad.worker import interpreter
 from hybrid_quad.worker.death import WorkerDied
 from scenes import add_cube, add_sphere
@@ -112,8 +113,61 @@ def test_a_crash_is_told_with_its_stage(scene_state, capfd):
     with pytest.raises(WorkerDied) as caught:
         run.result()
     message = operators.message_of(caught.value)
-    assert run.worker.stage in message and "Nothing was changed" in message and "segmentation fault" in message
+    assert in_words(run.worker.stage) in message and "Nothing was changed" in message and "segmentation fault" in message
     assert "Segmentation fault" in capfd.readouterr().err  # where the worker was, for who reports it
+    assert scene_state() == before
+
+
+def _assert_out_of_memory_is_told(run, scene_state, before) -> None:
+    with pytest.raises((MemoryError, hybrid_quad.Cancelled, WorkerDied)) as caught:
+        run.result()
+    message = operators.message_of(caught.value)
+    assert "Nothing was changed" in message and "memory" in message
+    assert in_words(run.worker.stage) in message and "_" not in message.partition("(")[0]
+    background_run.forget()
+    assert scene_state() == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="prlimit")
+def test_a_worker_without_memory_is_told_with_its_stage(scene_state):
+    import resource
+
+    run = _start_long()
+    before = scene_state()
+    worker = run.worker.process_id
+    used = int(Path(f"/proc/{worker}/statm").read_text().split()[0]) * resource.getpagesize()
+    limit = used + 2**25  # the run takes far more; without any, not even the stack can grow
+    resource.prlimit(worker, resource.RLIMIT_AS, (limit, limit))
+    _assert_out_of_memory_is_told(run, scene_state, before)
+
+
+def test_the_memory_limit_is_told_with_its_stage(scene_state):
+    add_sphere(LONG_RUN_QUADS).hybrid_quad.memory_limit = 120
+    before = scene_state()
+    run = background_run.start(_task(bpy.context.object), bpy.context.object)
+    _assert_out_of_memory_is_told(run, scene_state, before)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_worker_that_the_system_ends_for_its_memory_is_told(scene_state):
+    run = _start_long()
+    before = scene_state()
+    os.kill(run.worker.process_id, signal.SIGKILL)  # as Linux does
+    _assert_out_of_memory_is_told(run, scene_state, before)
+
+
+def test_a_script_without_memory_reads_the_stage(monkeypatch, scene_state):
+    from hybrid_quad.blender.remesh_task import RemeshTask
+
+    def fail(_task, progress=None):
+        progress("frame field", 0.3)
+        raise MemoryError
+
+    monkeypatch.setattr(RemeshTask, "solve", fail)
+    add_sphere()
+    before = scene_state()
+    with pytest.raises(RuntimeError, match=f"memory ran out while {WORDS['frame field']}"):
+        bpy.ops.object.hybrid_quad_remesh()
     assert scene_state() == before
 
 

@@ -36,7 +36,7 @@ def _start_transfer(task):
     background_run.forget()
     run = background_run.start(task, bpy.context.object)
     assert run.is_known
-    assert run.worker.stage == "data_transfer" and "Data transfer" in run.status and 0 < run.fraction < 1
+    assert run.worker.stage == "data_transfer" and "Transferring data" in run.status and 0 < run.fraction < 1
     return run
 
 
@@ -99,7 +99,7 @@ def test_a_crash_is_told_with_its_stage(task, scene_state, capfd):
     with pytest.raises(WorkerDied) as caught:
         run.result()
     message = operators.message_of(caught.value)
-    assert "data transfer" in message and "Nothing was changed" in message
+    assert "while transferring data" in message and "memory" in message and "Nothing was changed" in message
     assert scene_state() == before
 
 

@@ -10,6 +10,7 @@ import bpy
 
 from ..core.errors import Cancelled, InputError
 from ..core.remesh import RemeshResult
+from ..core.stage_names import in_words
 from ..worker.interpreter import worker_command
 from ..worker.kinds import Request
 from ..worker.known_results import KnownResults
@@ -206,13 +207,13 @@ class BackgroundRun:
 
     @property
     def status(self) -> str:
-        """What it does now, for example ``"Periodic field"``."""
+        """What it does now, for example ``"Finding the directions of edges"``."""
         if self.is_finished:
             return "Making the mesh" if self.is_building else "Done: go to Object Mode"
         if self.worker is None:
             return "Go to Object Mode: the mesh is to be read" if self._waits else "Reading the mesh"
         silence = self.worker.silent_seconds
-        text = self.worker.stage.replace("_", " ").capitalize()
+        text = in_words(self.worker.stage).capitalize()
         return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
 
     def result(self) -> RemeshResult:
@@ -227,7 +228,7 @@ class BackgroundRun:
         if self._transfer is None:
             if self._solving is not None:
                 self._solving.result()  # which raises, but for one that was ended between the two halves
-            raise Cancelled(f"cancelled before {STAGE.replace('_', ' ')}")
+            raise Cancelled(f"cancelled before {in_words(STAGE)}")
         return self._transfer.result()
 
     def find_source(self) -> bpy.types.Object:

@@ -13,8 +13,10 @@ from ..cli.messages import describe_defect, describe_elements, what_became_of
 from ..core import native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
+from ..core.stage_names import StageWatch, while_in
 from ..worker.death import WorkerDied
-from ..worker.transfer_request import TransferredData
+from ..worker.stage_errors import told_with_stage
+from ..worker.transfer_request import STAGE, TransferredData
 from . import background_run
 from .background_run import BackgroundRun
 from .modes import out_of, out_of_for_change
@@ -46,15 +48,17 @@ class RemeshOperator(ActiveMeshOperator):
 
     def _now(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """A whole run."""
+        watch = StageWatch()
         try:
             # Sculpt Mode keeps changes to itself that the depsgraph does not know yet.
             with out_of(obj, "SCULPT"):
                 task = prepare_task(obj, context.evaluated_depsgraph_get())
-            result = task.solve()
+            result = task.solve(progress=watch)
+            watch.stage = STAGE
             with out_of_for_change(obj):
                 return self._finish(context, obj, task, result, Placement.of_settings(obj))
         except Exception as error:
-            return self._fail(error)
+            return self._fail(told_with_stage(error, watch.stage))
 
     def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """Leaves a run to worker processes; the operator is then modal. Quads that are known already are not made again."""
@@ -235,8 +239,7 @@ def message_of(error: BaseException) -> str:
         return f"Nothing was changed: {error}"
     traceback.print_exception(type(error), error, error.__traceback__)
     kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
-    stage = getattr(error, "stage", "").replace("_", " ")
-    where = f" during {stage}" if stage else ""
+    where = f" {while_in(error.stage)}" if isinstance(error, InternalError) and error.stage else ""
     return f"Internal error{where}, nothing was changed: {kind}{error}. Please report it with the mesh"
 
 

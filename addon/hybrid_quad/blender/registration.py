@@ -17,6 +17,7 @@ from . import (
     command,
     copy_settings,
     operators,
+    own_mesh,
     panels,
     part_pick,
     presets,
@@ -64,6 +65,7 @@ def register() -> None:
         type=preview_settings.HybridQuadPreviewSettings, name="Hybrid Quad", description="What is drawn over objects"
     )
     sessions.register()
+    own_mesh.register()
     run_display.register()
     painting.register()
     for owner, entry in ENTRIES:
@@ -76,6 +78,7 @@ def unregister() -> None:
     background_run.forget()
     background_run.forget_results()
     sessions.unregister()
+    own_mesh.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
     for owner, entry in ENTRIES:

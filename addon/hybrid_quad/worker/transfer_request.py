@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from ..core.errors import Cancelled, InternalError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_names import while_in
 from ..core.surface_places import TriangleMesh
 from ..core.surface_walk import BoolArray
 from ..core.transfer.correspondence import Correspondence
@@ -181,7 +182,7 @@ class _Steps:
 
     def __call__(self) -> None:
         if self._cancel is not None and self._cancel():
-            raise Cancelled(f"cancelled during {STAGE.replace('_', ' ')}")
+            raise Cancelled(f"cancelled {while_in(STAGE)}")
         if self._progress is not None:
             self._progress(STAGE, self._done / self._count)
         self._done += 1
