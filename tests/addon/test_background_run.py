@@ -208,10 +208,44 @@ def _change_modifier(obj: bpy.types.Object) -> None:
     obj.modifiers["Bevel"].width = 0.3
 
 
-@pytest.mark.parametrize("change", [_move_a_vertex, _mark_a_seam, _paint, _add_modifier, _change_modifier])
+def _move_in_uv_space(obj: bpy.types.Object) -> None:
+    obj.data.uv_layers[0].data[3].uv = (5, 5)
+
+
+def _rename_a_group(obj: bpy.types.Object) -> None:
+    obj.vertex_groups[0].name = "Other"
+
+
+def _give_a_material(obj: bpy.types.Object) -> None:
+    obj.material_slots[0].material = bpy.data.materials.new("Other")
+
+
+def _move_in_a_shape(obj: bpy.types.Object) -> None:
+    obj.data.shape_keys.key_blocks["Up"].data[2].co.z += 1
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _move_a_vertex,
+        _mark_a_seam,
+        _paint,
+        _add_modifier,
+        _change_modifier,
+        _move_in_uv_space,
+        _rename_a_group,
+        _give_a_material,
+        _move_in_a_shape,
+    ],
+)
 def test_a_changed_source_is_noticed(change):
     obj = add_cube()
     obj.modifiers.new("Bevel", "BEVEL")
+    obj.data.uv_layers.new(name="Map")
+    obj.data.materials.append(bpy.data.materials.new("First"))
+    obj.vertex_groups.new(name="Group")
+    obj.shape_key_add(name="Basis")
+    obj.shape_key_add(name="Up")
     track = SourceTrack(obj)
     assert not track.has_changed(track.find())
     change(obj)
@@ -228,6 +262,32 @@ def test_what_changes_nothing_of_the_surface_is_no_change():
     obj.data.name = "Other"
     bpy.context.view_layer.update()
     assert not track.has_changed(track.find())
+
+
+@pytest.mark.parametrize("is_edited", [True, False])
+def test_edited_weights_are_noticed(is_edited):
+    """No digest has them; Blender tells that something was touched, and only then they are read again."""
+    obj = add_sphere()
+    obj.vertex_groups.new(name="Group").add([1, 2, 3], 0.5, "REPLACE")
+    bpy.context.view_layer.update()
+    run = background_run.start(None, obj)
+    run.result()
+    assert not run.has_changed_source(obj)
+    for _ in range(1 if is_edited else 2):
+        bpy.ops.object.vertex_group_invert()
+    bpy.context.view_layer.update()
+    assert run.source.was_touched and not run.source.has_changed(obj)
+    assert run.has_changed_source(obj) == is_edited
+
+
+def test_moved_and_scaled_a_source_is_the_same():
+    obj = add_sphere()
+    run = background_run.start(None, obj)
+    run.result()
+    obj.location.x, obj.scale.y = 3, 2
+    obj.data.update_tag()
+    bpy.context.view_layer.update()
+    assert run.source.was_touched and not run.has_changed_source(obj)
 
 
 def test_a_renamed_source_is_found_and_a_deleted_one_is_not():

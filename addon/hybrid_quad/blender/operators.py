@@ -126,7 +126,7 @@ class RemeshOperator(ActiveMeshOperator):
         if self._run.task.part is not None:
             self._run.require_same_mesh(obj)
             return Placement(self._run.in_place, takes_selection=context.view_layer.objects.active == obj)
-        is_changed = obj.mode != "OBJECT" or self._run.source.has_changed(obj)
+        is_changed = obj.mode != "OBJECT" or self._run.has_changed_source(obj)
         if is_changed:
             self.report(
                 {"WARNING"},

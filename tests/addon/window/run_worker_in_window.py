@@ -152,7 +152,7 @@ def hanging_past_its_time_limit() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     run = background_run.current()
     yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGSTOP))
-    expect_said("Error", "did not answer", in_words(run.worker.stage))
+    expect_said("did not answer", in_words(run.worker.stage))
     press("ESC")  # the message
     yield 0.3
 
@@ -170,7 +170,7 @@ def out_of_memory() -> Iterator[float]:
         resource.prlimit(run.worker.process_id, resource.RLIMIT_AS, (limit, limit))
 
     yield from expect_unchanged_after(take_memory_away)
-    expect_said("Error", "memory ran out", in_words(run.worker.stage))
+    expect_said("memory ran out", in_words(run.worker.stage))
     press("ESC")
     yield 0.3
 
@@ -181,7 +181,7 @@ def memory_limit_reached() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     run = background_run.current()
     yield from expect_unchanged_after(lambda: None)
-    expect_said("Error", "memory limit", in_words(run.worker.stage))
+    expect_said("memory limit", in_words(run.worker.stage))
     press("ESC")
     yield 0.3
 
