@@ -113,7 +113,9 @@ def test_a_crash_is_told_with_its_stage(scene_state, capfd):
     with pytest.raises(WorkerDied) as caught:
         run.result()
     message = operators.message_of(caught.value)
-    assert in_words(run.worker.stage) in message and "Nothing was changed" in message and "segmentation fault" in message
+    assert (
+        in_words(run.worker.stage) in message and "Nothing was changed" in message and "segmentation fault" in message
+    )
     assert "Segmentation fault" in capfd.readouterr().err  # where the worker was, for who reports it
     assert scene_state() == before
 
