@@ -9,8 +9,8 @@ from typing import Any
 
 import bpy
 
-from ..cli.messages import describe_defect, describe_elements, what_became_of
-from ..core import native
+from ..cli.messages import describe_elements, what_became_of
+from ..core import defect_names, native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
 from ..core.stage_names import StageWatch, while_in
@@ -152,7 +152,7 @@ class RemeshOperator(ActiveMeshOperator):
         target = place_result(context, obj, task, result, placement, carried, built)
         self._target = target.name
         for defect in result.report["defects"]:
-            self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_defect(defect)}")
+            self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_found(defect)}")
         for warning in result.report["warnings"]:
             self.report({"WARNING"}, warning)
         irregular = result.report["irregular_vertices"]
@@ -241,6 +241,11 @@ def message_of(error: BaseException) -> str:
     kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
     where = f" {while_in(error.stage)}" if isinstance(error, InternalError) and error.stage else ""
     return f"Internal error{where}, nothing was changed: {kind}{error}. Please report it with the mesh"
+
+
+def describe_found(defect: dict[str, Any]) -> str:
+    """A defect that a run found, in its JSON form, for example ``"2 flipped faces (turned around)"``."""
+    return f"{defect_names.in_words(defect['code'], len(defect['elements']))} ({defect['remedy']})"
 
 
 def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:

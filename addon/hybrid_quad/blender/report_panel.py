@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 
 from ..cli.messages import what_became_of
+from ..core import defect_names
 from .panel_base import HybridQuadPanel, draw_figure
 from .result_mesh import read_report
 
@@ -31,9 +32,8 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
             draw_figure(rows, name, value)
         for defect in report.get("defects", ()):
             became = what_became_of(defect).capitalize()
-            self.layout.label(
-                text=f"{became}: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
-            )
+            name = defect_names.in_words(defect["code"], len(defect["elements"]))
+            self.layout.label(text=f"{became}: {name}", icon="INFO")
         for warning in report.get("warnings", ()):
             self.layout.label(text=warning, icon="ERROR")
 
