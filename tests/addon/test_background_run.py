@@ -173,6 +173,19 @@ def test_a_script_without_memory_reads_the_stage(monkeypatch, scene_state):
     assert scene_state() == before
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_of_a_worker_that_hangs_the_user_reads_how_long(monkeypatch):
+    run = _start_long()
+    os.kill(run.worker.process_id, signal.SIGSTOP)
+    run.poll()
+    assert run.silence == ""
+    monkeypatch.setattr(background_run, "_SILENCE", 0.0)
+    time.sleep(0.1)
+    assert run.silence == "No news for 0 s" and run.status == in_words(run.worker.stage).capitalize()
+    background_run.forget()
+    assert run.silence == ""
+
+
 def test_the_disabled_button_says_why():
     bpy.context.view_layer.objects.active = None
     with pytest.raises(RuntimeError, match="Select a mesh object"):

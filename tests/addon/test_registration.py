@@ -10,6 +10,7 @@ import pytest
 import hybrid_quad
 from hybrid_quad.blender import command, panels, registration
 from hybrid_quad.blender.painting import paint_tool, stroke_view
+from hybrid_quad.blender.panel_base import lines_of
 from scenes import add_cube
 
 
@@ -92,3 +93,10 @@ def test_settings_belong_to_the_object():
 def test_the_manifest_tells_the_same_version():
     manifest = Path(hybrid_quad.__file__).with_name("blender_manifest.toml").read_text()
     assert f'version = "{hybrid_quad.__version__}"' in manifest
+
+
+def test_long_texts_of_panels_are_broken_into_lines():
+    text = "The compiled part is missing: install the zip for this Blender and system"
+    lines = lines_of(text, "ERROR")
+    assert len(lines) > 2 and " ".join(lines) == text and max(map(len, lines)) <= 26
+    assert len(lines_of(text, share=0.5)) > len(lines)

@@ -216,14 +216,19 @@ class BackgroundRun:
 
     @property
     def status(self) -> str:
-        """What it does now, for example ``"Finding the directions of edges"``."""
+        """What it does now, for example ``"Finding edge directions"``."""
         if self.is_finished:
             return "Making the mesh" if self.is_building else "Done: go to Object Mode"
         if self.worker is None:
-            return "Go to Object Mode: the mesh is to be read" if self._waits else "Reading the mesh"
-        silence = self.worker.silent_seconds
-        text = in_words(self.worker.stage).capitalize()
-        return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
+            return "Go on in Object Mode" if self._waits else "Reading the mesh"
+        return in_words(self.worker.stage).capitalize()
+
+    @property
+    def silence(self) -> str:
+        """How long a worker has told nothing, for example ``"No news for 25 s"``; empty where that is nothing special."""
+        if self.worker is None or self.is_finished or self.worker.silent_seconds < _SILENCE:
+            return ""
+        return f"No news for {self.worker.silent_seconds:.0f} s"
 
     def result(self) -> RemeshResult:
         """The run's result; waits for the whole run, and raises what that raised, see :meth:`.process.WorkerRun.result`."""

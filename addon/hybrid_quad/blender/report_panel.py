@@ -8,7 +8,7 @@ import bpy
 
 from ..cli.messages import what_became_of
 from ..core import defect_names
-from .panel_base import HybridQuadPanel, draw_figure
+from .panel_base import HybridQuadPanel, draw_figure, draw_text
 from .result_mesh import read_report
 
 
@@ -33,9 +33,9 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
         for defect in report.get("defects", ()):
             became = what_became_of(defect).capitalize()
             name = defect_names.in_words(defect["code"], len(defect["elements"]))
-            self.layout.label(text=f"{became}: {name}", icon="INFO")
+            draw_text(self.layout, f"{became}: {name}", "INFO")
         for warning in report.get("warnings", ()):
-            self.layout.label(text=warning, icon="ERROR")
+            draw_text(self.layout, warning, "ERROR")
 
 
 def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -7,45 +7,45 @@ from collections.abc import Callable
 # Every stage that the native code or a worker tells of, and what is being done in it, in words that need no knowledge of the method.
 WORDS = {
     "start": "starting",
-    "mesh": "checking and repairing the mesh",
+    "mesh": "checking the mesh",
     "symmetry": "looking for symmetry",
-    "features and sizes": "finding sharp edges and sizes",
-    "working surface": "making an even surface to work on",
-    "frame field": "finding the directions of edges",
-    "sizing": "fitting the sizes to the directions",
-    "periodic field": "finding where rows of quads lie",
-    "spanning parameterization": "laying a grid on the surface",
-    "regular quads": "cutting quads out of the grid",
-    "singular patches": "filling the gaps between the quads",
+    "features and sizes": "finding edges to keep",
+    "working surface": "making an even surface",
+    "frame field": "finding edge directions",
+    "sizing": "fitting the edge lengths",
+    "periodic field": "laying out rows of quads",
+    "spanning parameterization": "laying the grid",
+    "regular quads": "cutting out quads",
+    "singular patches": "filling the gaps",
     "assemble": "joining the quads",
-    "improve": "improving the shape of the quads",
-    "hard guides": "fitting edges to loops and rings",
-    "count": "adjusting the number of quads",
-    "limit surface": "fitting the subdivided surface",
+    "improve": "improving the quads",
+    "hard guides": "fitting loops and rings",
+    "count": "adjusting the quad count",
+    "limit surface": "fitting the subdivision",
     "quality": "measuring the result",
     "done": "handing the result over",
     "validation": "checking the result",
-    "data_transfer": "transferring data to the result",
+    "data_transfer": "transferring data",
     # Where something is noticed that must not happen.
     "remesh": "making the quads",
-    "repair": "checking and repairing the mesh",
+    "repair": "checking the mesh",
     "quad complex": "joining the quads",
-    "working_surface": "making an even surface to work on",
-    "eigenpair": "finding where rows of quads lie",
-    "patch": "filling the gaps between the quads",
-    "morse-smale": "filling the gaps between the quads",
+    "working_surface": "making an even surface",
+    "eigenpair": "laying out rows of quads",
+    "patch": "filling the gaps",
+    "morse-smale": "filling the gaps",
     "subdivision": "subdividing the surface",
     "case": "running a case",
 }
 
 
 def in_words(stage: str) -> str:
-    """What is done in a stage, as it goes on in a sentence: ``"finding the directions of edges"``."""
+    """What is done in a stage, as it goes on in a sentence: ``"finding edge directions"``."""
     return WORDS.get(stage or "start") or stage.replace("_", " ")
 
 
 def while_in(stage: str) -> str:
-    """When something happened: ``"while finding the directions of edges"``; empty where the stage is not known."""
+    """When something happened: ``"while finding edge directions"``; empty where the stage is not known."""
     return f"while {in_words(stage)}" if stage else ""
 
 

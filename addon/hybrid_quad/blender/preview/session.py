@@ -67,7 +67,7 @@ class Session(Generic[Result]):
 
     @property
     def status(self) -> str:
-        """What goes on, for example ``"Finding the directions of edges"``; empty where nothing does."""
+        """What goes on, for example ``"Finding edge directions"``; empty where nothing does."""
         if self._worker is None:
             return "Waiting" if self._changed_at is not None else ""
         return in_words(self._worker.stage).capitalize()
