@@ -349,3 +349,10 @@ def test_what_is_painted_can_be_cleared(kind):
     assert bpy.ops.hybrid_quad.clear_painted(kind=kind) == {"FINISHED"}
     assert not obj.children
     assert not {GUIDE_ATTRIBUTE, DENSITY_ATTRIBUTE} & set(obj.data.attributes.keys())
+
+
+@pytest.mark.parametrize(("source", "words"), [("VERTEX_GROUP", "no vertex group"), ("COLOR", "no color attribute")])
+def test_a_button_without_its_layer_says_what_is_missing(source, words):
+    add_grid()
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.hybrid_quad.density_from_layer(source=source)

@@ -19,7 +19,10 @@ def _traces() -> list[str]:
     names += [name for owner in (bpy.types.Object, bpy.types.WorkSpace) for name in dir(owner) if "hybrid_quad" in name]
     names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
     names += ["drawing"] * len(stroke_view._handles)
-    names += [f.__name__ for f in bpy.app.handlers.load_post if "hybrid_quad" in f.__module__]
+    for name in dir(bpy.app.handlers):
+        handlers = getattr(bpy.app.handlers, name)
+        if isinstance(handlers, list):
+            names += [f"{name} {each.__name__}" for each in handlers if "hybrid_quad" in each.__module__]
     for owner in (bpy.types.VIEW3D_MT_object, bpy.types.DATA_PT_remesh, panels.VIEW3D_PT_hybrid_quad_guides):
         added = getattr(owner.draw, "_draw_funcs", [])
         names += [f.__name__ for f in added if "hybrid_quad" in f.__module__ and f.__name__ != "draw"]
