@@ -265,6 +265,24 @@ def test_the_time_limit_ends_a_worker_that_hangs(start, monkeypatch):
     assert caught.value.code == "time_limit" and in_words(run.stage) in str(caught.value)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="knows how much processors are used")
+def test_a_worker_that_hangs_is_ended_with_an_error_that_names_the_stage(long_run, monkeypatch):
+    monkeypatch.setattr(process, "_HANGS", 1.0)
+    run = long_run()
+    os.kill(run.process_id, signal.SIGSTOP)
+    with pytest.raises(WorkerDied, match="it hung") as caught:
+        run.result()
+    assert in_words(run.stage) in str(caught.value)
+    wait_until(lambda: is_gone(run.process_id))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="knows how much processors are used")
+def test_a_worker_that_is_busy_does_not_hang(long_run, monkeypatch):
+    monkeypatch.setattr(process, "_HANGS", 1.0)
+    run = long_run()
+    assert not run.wait(3.0)
+
+
 def test_the_memory_limit_is_the_workers_own(start):
     run = start(wave(quads=500_000, memory_limit=150))
     with pytest.raises(Cancelled, match="memory limit") as caught:

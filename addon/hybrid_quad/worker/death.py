@@ -29,7 +29,7 @@ _CAUSES = {
 
 
 class WorkerDied(RuntimeError):
-    """The process of a run ended before the run did.
+    """The process of a run ended before the run did, or was ended as it hung.
 
     Attributes
     ----------
@@ -41,8 +41,8 @@ class WorkerDied(RuntimeError):
         The end of what it wrote to its error stream.
     """
 
-    def __init__(self, stage: str, status: int, log: str = "") -> None:
-        cause = cause_of(status)
+    def __init__(self, stage: str, status: int, log: str = "", cause: str = "") -> None:
+        cause = cause or cause_of(status)
         if any(text in log for text in _NO_MEMORY):
             cause = f"memory ran out; {cause}"
         super().__init__(f"the run ended {while_in(stage)}: {cause}")

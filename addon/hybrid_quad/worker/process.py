@@ -22,6 +22,7 @@ from ..core.errors import Cancelled
 from ..core.stage_names import while_in
 from .bundle import load_fields
 from .death import WorkerDied
+from .idleness import Idleness
 from .interpreter import worker_command
 from .kinds import Request
 from .messages import Message, decode, error_of
@@ -40,6 +41,7 @@ _GRACE = 5.0  # seconds past its time limit after which a run that should have e
 _LEAVING = 1.0  # seconds that a killed process gets to be gone
 _INTERVAL = 0.01  # seconds between two looks while somebody waits
 _LOG_SHOWN = 4000  # characters
+_HANGS = 60.0  # seconds without news and without any use of a processor after which a run is ended
 
 
 class WorkerSeat:
@@ -150,6 +152,7 @@ class WorkerRun(Generic[Result]):
         self._seat = seat or WorkerSeat(temporary_folder=temporary_folder, command=command)
         self._process, self._messages, self._folder = self._seat.process, self._seat.messages, self._seat.folder
         self._seat.hand_over(request)
+        self._idleness = Idleness(self._process.pid)
 
     @property
     def has_result(self) -> bool:
@@ -180,6 +183,9 @@ class WorkerRun(Generic[Result]):
         elif self._limit is not None and time.monotonic() - self._began > self._limit + _GRACE:
             text = f"the time limit of {self._limit:g} s is over, and the run did not answer any more "
             self._end(Cancelled(text + while_in(self.stage), "time_limit"))
+        elif self._idleness.seconds() > _HANGS:
+            cause = f"it hung: for {_HANGS:.0f} s it told nothing and used no processor"
+            self._end(WorkerDied(self.stage, 0, self._end_of_log(), cause))
         return self.is_finished
 
     def cancel(self) -> None:
@@ -229,6 +235,7 @@ class WorkerRun(Generic[Result]):
             if message["event"] != "progress":
                 return message
             self._news = time.monotonic()
+            self._idleness.reset()
             self.stage, self.fraction = str(message["stage"]) or self.stage, float(message["fraction"])
 
     def _take(self, last: Message) -> None:

@@ -24,6 +24,7 @@ from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_p
 import hybrid_quad
 from hybrid_quad.blender import background_run
 from hybrid_quad.core.stage_names import in_words
+from hybrid_quad.worker import process
 from scenes import activate, add_cube, add_sphere
 
 LONG_RUN_QUADS = 150_000
@@ -46,6 +47,7 @@ def steps() -> Iterator[float]:
         memory_limit_reached,
         hanging,
         hanging_past_its_time_limit,
+        hanging_for_good,
         source_deleted,
         source_edited,
         source_renamed,
@@ -153,6 +155,18 @@ def hanging_past_its_time_limit() -> Iterator[float]:
     run = background_run.current()
     yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGSTOP))
     expect_said("did not answer", in_words(run.worker.stage))
+    press("ESC")  # the message
+    yield 0.3
+
+
+def hanging_for_good() -> Iterator[float]:
+    """Nobody presses anything, and there is no limit."""
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    hangs, process._HANGS = process._HANGS, 3.0
+    yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGSTOP))
+    process._HANGS = hangs
+    expect_said("it hung", in_words(run.worker.stage))
     press("ESC")  # the message
     yield 0.3
 
