@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import bpy
@@ -103,3 +105,11 @@ def test_long_texts_of_panels_are_broken_into_lines():
     lines = lines_of(text, "ERROR")
     assert len(lines) > 2 and " ".join(lines) == text and max(map(len, lines)) <= 26
     assert len(lines_of(text, share=0.5)) > len(lines)
+
+
+@pytest.mark.skipif(bool(bpy.app.binary_path), reason="Blender as a module")
+def test_a_script_that_ends_registered_ends_well():
+    """Some Blenders crash as they end, where a class is left."""
+    script = f"import sys; sys.path[:0] = {sys.path!r}; import bpy, hybrid_quad; hybrid_quad.register()"
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120, check=False)
+    assert ended.returncode == 0, ended.stderr[-2000:]

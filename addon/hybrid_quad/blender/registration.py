@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 
 import bpy
@@ -71,10 +72,14 @@ def register() -> None:
     for owner, entry in ENTRIES:
         getattr(bpy.types, owner).append(entry)
     command.register()
+    if not bpy.app.binary_path:
+        # Blender as a module: some versions (4.2, 4.5) crash or hang as they end with a class registered.
+        atexit.register(unregister)
 
 
 def unregister() -> None:
     """Safe to call where nothing is registered."""
+    atexit.unregister(unregister)
     background_run.forget()
     background_run.forget_results()
     sessions.unregister()
