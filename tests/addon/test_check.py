@@ -9,7 +9,7 @@ import bpy
 import pytest
 
 from hybrid_quad.blender.check_operators import read_check
-from scenes import add_object, add_sphere
+from scenes import activate, add_object, add_sphere, remesh
 
 TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
@@ -127,3 +127,16 @@ def test_what_cannot_be_repaired_leaves_no_copy():
     with pytest.raises(RuntimeError, match="area"):
         bpy.ops.object.hybrid_quad_repair()
     assert (len(bpy.data.objects), len(bpy.data.meshes)) == before
+
+
+def test_what_the_window_tells_has_no_identifiers(capfd):
+    """Reports of all three operators are words and numbers."""
+    obj = _with_fin()
+    assert bpy.ops.object.hybrid_quad_check() == {"FINISHED"}
+    assert bpy.ops.object.hybrid_quad_repair() == {"FINISHED"}
+    obj.hide_set(False)
+    activate(obj)
+    remesh()
+    lines = [line for line in capfd.readouterr().out.splitlines() if line.startswith(("Info:", "Warning:"))]
+    assert any("in more than two faces" in line for line in lines) and any("quads" in line for line in lines)
+    assert not any("_" in line for line in lines), lines

@@ -8,7 +8,9 @@ import pytest
 from mathutils import Euler, Vector
 
 from hybrid_quad.blender.guide_attributes import DENSITY_ATTRIBUTE, GUIDE_ATTRIBUTE
+from hybrid_quad.blender.painting.paint_operator import Pressure
 from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.core.painting.stroke_path import PenPlace
 from scenes import add_cube, add_grid, add_sphere, points_of, remesh
 
 
@@ -135,6 +137,18 @@ def test_pressure_and_strength_make_strokes_stronger():
         bpy.ops.hybrid_quad.paint_guide(stroke=points, radius=0.4, strength=strength)
         strengths.append(np.linalg.norm(directions_of(obj), axis=1).max())
     assert strengths == pytest.approx([1, 0.5, 0.25], abs=0.03)
+
+
+@pytest.mark.parametrize("strength", [True, False])
+@pytest.mark.parametrize("size", [True, False])
+def test_pressure_counts_for_what_the_switches_say(strength, size):
+    place = PenPlace(np.zeros(3), np.array((0, 0, 1.0)), 0)
+    pressed = Pressure(strength=strength, size=size)
+    half = pressed.on(place, 0.5)
+    assert (half.pressure, half.size) == (0.5 if strength else 1, 0.5 if size else 1)
+    assert pressed.on(place, 0.0).size > 0 and pressed.on(place, 7.0) == place
+    brush = bpy.context.workspace.hybrid_quad_brush
+    assert brush.use_pressure_strength and not brush.use_pressure_size  # as Blender's brushes have them
 
 
 def _strokes(obj):
@@ -335,3 +349,10 @@ def test_what_is_painted_can_be_cleared(kind):
     assert bpy.ops.hybrid_quad.clear_painted(kind=kind) == {"FINISHED"}
     assert not obj.children
     assert not {GUIDE_ATTRIBUTE, DENSITY_ATTRIBUTE} & set(obj.data.attributes.keys())
+
+
+@pytest.mark.parametrize(("source", "words"), [("VERTEX_GROUP", "no vertex group"), ("COLOR", "no color attribute")])
+def test_a_button_without_its_layer_says_what_is_missing(source, words):
+    add_grid()
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.hybrid_quad.density_from_layer(source=source)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import bpy
@@ -10,6 +12,7 @@ import pytest
 import hybrid_quad
 from hybrid_quad.blender import command, panels, registration
 from hybrid_quad.blender.painting import paint_tool, stroke_view
+from hybrid_quad.blender.panel_base import lines_of
 from scenes import add_cube
 
 
@@ -18,7 +21,10 @@ def _traces() -> list[str]:
     names += [name for owner in (bpy.types.Object, bpy.types.WorkSpace) for name in dir(owner) if "hybrid_quad" in name]
     names += ["tool" for tool in paint_tool.TOOLS if hasattr(tool, "_bl_tool")]
     names += ["drawing"] * len(stroke_view._handles)
-    names += [f.__name__ for f in bpy.app.handlers.load_post if "hybrid_quad" in f.__module__]
+    for name in dir(bpy.app.handlers):
+        handlers = getattr(bpy.app.handlers, name)
+        if isinstance(handlers, list):
+            names += [f"{name} {each.__name__}" for each in handlers if "hybrid_quad" in each.__module__]
     for owner in (bpy.types.VIEW3D_MT_object, bpy.types.DATA_PT_remesh, panels.VIEW3D_PT_hybrid_quad_guides):
         added = getattr(owner.draw, "_draw_funcs", [])
         names += [f.__name__ for f in added if "hybrid_quad" in f.__module__ and f.__name__ != "draw"]
@@ -92,3 +98,19 @@ def test_settings_belong_to_the_object():
 def test_the_manifest_tells_the_same_version():
     manifest = Path(hybrid_quad.__file__).with_name("blender_manifest.toml").read_text()
     assert f'version = "{hybrid_quad.__version__}"' in manifest
+
+
+def test_long_texts_of_panels_are_broken_into_lines():
+    text = "The compiled part is missing: install the zip for this Blender and system"
+    lines = lines_of(text, "ERROR")
+    assert len(lines) > 2 and " ".join(lines) == text and max(map(len, lines)) <= 26
+    assert len(lines_of(text, share=0.5)) > len(lines)
+
+
+@pytest.mark.skipif(bool(bpy.app.binary_path), reason="Blender as a module")
+def test_a_script_that_ends_registered_ends_well():
+    """Some Blenders crash as they end, where a class is left."""
+    folder = str(Path(hybrid_quad.__file__).parents[1])
+    script = f"import sys; sys.path.insert(0, {folder!r}); import bpy, hybrid_quad; hybrid_quad.register()"
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120, check=False)
+    assert ended.returncode == 0, ended.stderr[-2000:]

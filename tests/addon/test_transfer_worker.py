@@ -34,9 +34,10 @@ def _bits(record):
 def _start_transfer(task):
     background_run.start(task, bpy.context.object).result()
     background_run.forget()
+    background_run._known_data.clear()
     run = background_run.start(task, bpy.context.object)
     assert run.is_known
-    assert run.worker.stage == "data_transfer" and "Data transfer" in run.status and 0 < run.fraction < 1
+    assert run.worker.stage == "data_transfer" and "Transferring data" in run.status and 0 < run.fraction < 1
     return run
 
 
@@ -91,6 +92,22 @@ def test_cancelled_between_the_halves_nothing_begins(task):
         run.result()
 
 
+def test_the_same_once_more_needs_no_worker(task, scene_state):
+    obj = bpy.context.object
+    run = background_run.start(task, obj)
+    expected, bits = run.result(), _bits(run.carried())
+    background_run.forget()
+    again = background_run.start(task, obj)
+    assert again.worker is None and again.is_finished and again.has_result and again.fraction == 1
+    assert again.result() is expected and _bits(again.carried()) == bits
+    place_result(bpy.context, obj, again.task, again.result(), carried=again.carried())
+    assert _bits(again.carried()) == bits  # placing changes nothing of what is shared
+    background_run.forget()
+    obj.data.uv_layers[0].data[0].uv = (7, 7)
+    other = background_run.start(prepare_task(obj, bpy.context.evaluated_depsgraph_get()), obj)
+    assert other.is_known and other.worker.stage == "data_transfer"
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_crash_is_told_with_its_stage(task, scene_state, capfd):
     before = scene_state()
@@ -99,7 +116,7 @@ def test_a_crash_is_told_with_its_stage(task, scene_state, capfd):
     with pytest.raises(WorkerDied) as caught:
         run.result()
     message = operators.message_of(caught.value)
-    assert "data transfer" in message and "Nothing was changed" in message
+    assert "while transferring data" in message and "memory" in message and "Nothing was changed" in message
     assert scene_state() == before
 
 

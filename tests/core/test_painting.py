@@ -31,7 +31,7 @@ def surface_of(mesh, of_faces: bool = False) -> BrushSurface:
     return BrushSurface(np.asarray(vertices, float), as_polygons(faces), of_faces=of_faces)
 
 
-def draw(stroke, points, pressure: float = 1.0, radius: float | None = None):
+def draw(stroke, points, pressure: float = 1.0, radius: float | None = None, size: float = 1.0):
     """Leads the pen over the surface along a polyline."""
     surface, radius = stroke.surface, radius or stroke.brush.radius
     path = StrokePath(radius / 4)
@@ -40,7 +40,7 @@ def draw(stroke, points, pressure: float = 1.0, radius: float | None = None):
     polygon_of = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 2, 0))
     for position, triangle in zip(near.positions, near.triangles, strict=True):
         polygon = int(polygon_of[triangle])
-        stroke.add(path.add(PenPlace(position, surface.polygon_normals[polygon], polygon, pressure)))
+        stroke.add(path.add(PenPlace(position, surface.polygon_normals[polygon], polygon, pressure, size)))
     stroke.add(path.lift())
     return stroke.values
 
@@ -58,6 +58,16 @@ def degrees_between_crosses(first: np.ndarray, second: np.ndarray) -> np.ndarray
     cosine = np.einsum("ij,ij->i", first, second) / np.linalg.norm(first, axis=1) / np.linalg.norm(second, axis=1)
     angle = np.degrees(np.arccos(np.clip(np.abs(cosine), 0, 1)))
     return np.minimum(angle, 90 - angle)
+
+
+@pytest.mark.parametrize("of_faces", [False, True])
+def test_a_brush_of_half_the_size_paints_as_one_of_half_the_radius(of_faces):
+    surface, way = surface_of(grid(40, 40), of_faces), line_to((0.2, 0.3, 0), (0.7, 0.8, 0))
+    small = draw(Comb(surface, none_on(surface), Brush(0.2)), way, size=0.5)
+    fine = draw(Comb(surface, none_on(surface), Brush(0.1)), way)
+    full = draw(Comb(surface, none_on(surface), Brush(0.2)), way)
+    assert np.array_equal(small.any(axis=1), fine.any(axis=1)) and small == pytest.approx(fine, abs=1e-9)
+    assert small.any(axis=1).sum() < 0.7 * full.any(axis=1).sum()
 
 
 @pytest.mark.parametrize("name", sorted(FALLOFFS))

@@ -17,6 +17,7 @@ import pytest
 from hybrid_quad import Cancelled, InputError
 from hybrid_quad.core.mesh_arrays import as_polygons
 from hybrid_quad.core.options import RemeshOptions
+from hybrid_quad.core.stage_names import in_words
 from hybrid_quad.core.strokes import Stroke
 from hybrid_quad.worker import process
 from hybrid_quad.worker.death import WorkerDied
@@ -211,16 +212,16 @@ def test_a_worker_that_dies_is_an_error_that_names_stage_and_cause(long_run, num
     with pytest.raises(WorkerDied) as caught:
         run.result()
     assert caught.value.status == -number and caught.value.stage == run.stage
-    assert run.stage in str(caught.value) and number.name in str(caught.value)
+    assert in_words(run.stage) in str(caught.value) and number.name in str(caught.value)
     assert number == signal.SIGKILL or "Fatal Python error" in caught.value.log
 
 
 def test_cancelling_kills_a_busy_worker(long_run):
     run = long_run()
     run.cancel()
-    with pytest.raises(Cancelled, match="cancelled during") as caught:
+    with pytest.raises(Cancelled, match="cancelled while") as caught:
         run.result()
-    assert caught.value.code == "cancelled" and run.stage.replace("_", " ") in str(caught.value)
+    assert caught.value.code == "cancelled" and in_words(run.stage) in str(caught.value)
     wait_until(lambda: is_gone(run.process_id))
 
 
@@ -261,13 +262,32 @@ def test_the_time_limit_ends_a_worker_that_hangs(start, monkeypatch):
     os.kill(run.process_id, signal.SIGSTOP)
     with pytest.raises(Cancelled, match="did not answer") as caught:
         run.result()
-    assert caught.value.code == "time_limit" and run.stage in str(caught.value)
+    assert caught.value.code == "time_limit" and in_words(run.stage) in str(caught.value)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="knows how much processors are used")
+def test_a_worker_that_hangs_is_ended_with_an_error_that_names_the_stage(long_run, monkeypatch):
+    monkeypatch.setattr(process, "_HANGS", 1.0)
+    run = long_run()
+    os.kill(run.process_id, signal.SIGSTOP)
+    with pytest.raises(WorkerDied, match="it hung") as caught:
+        run.result()
+    assert in_words(run.stage) in str(caught.value)
+    wait_until(lambda: is_gone(run.process_id))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="knows how much processors are used")
+def test_a_worker_that_is_busy_does_not_hang(long_run, monkeypatch):
+    monkeypatch.setattr(process, "_HANGS", 1.0)
+    run = long_run()
+    assert not run.wait(3.0)
 
 
 def test_the_memory_limit_is_the_workers_own(start):
-    with pytest.raises(Cancelled) as caught:
-        start(wave(quads=500_000, memory_limit=150)).result()
-    assert caught.value.code == "memory_limit"
+    run = start(wave(quads=500_000, memory_limit=150))
+    with pytest.raises(Cancelled, match="memory limit") as caught:
+        run.result()
+    assert caught.value.code == "memory_limit" and in_words(run.stage) in str(caught.value)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="prlimit")
@@ -279,16 +299,23 @@ def test_where_no_memory_is_left_the_run_says_so(long_run):
     resource.prlimit(run.process_id, resource.RLIMIT_AS, (used, used))
     with pytest.raises((MemoryError, WorkerDied)) as caught:
         run.result()
-    assert run.stage.replace("_", " ") in str(caught.value)
+    assert in_words(run.stage) in str(caught.value)
+    assert isinstance(caught.value, MemoryError) or "memory ran out" in str(caught.value)
 
 
 def test_a_program_that_is_no_worker_is_an_error(start):
     script = "import sys; print('hello'); print('{\"no\": 1}'); print('what went wrong', file=sys.stderr); sys.exit(3)"
-    with pytest.raises(WorkerDied, match=r"during start.*exit status 3") as caught:
+    with pytest.raises(WorkerDied, match=r"while starting.*exit status 3") as caught:
         start(wave(), command=[sys.executable, "-c", script]).result()
     assert "what went wrong" in caught.value.log
     with pytest.raises(OSError):
         start(wave(), command=["/no/such/program"]).result()
+
+
+def test_a_program_that_dies_for_want_of_memory_is_told_so(start):
+    script = "import os, sys; print('terminate called: std::bad_alloc', file=sys.stderr, flush=True); os.abort()"
+    with pytest.raises(WorkerDied, match="memory ran out"):
+        start(wave(), command=[sys.executable, "-c", script]).result()
 
 
 @needs_signals

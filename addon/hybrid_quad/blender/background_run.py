@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from typing import Any
@@ -10,17 +11,19 @@ import bpy
 
 from ..core.errors import Cancelled, InputError
 from ..core.remesh import RemeshResult
+from ..core.stage_names import in_words
 from ..worker.interpreter import worker_command
 from ..worker.kinds import Request
-from ..worker.known_results import KnownResults
+from ..worker.known_results import KnownResults, key_of
 from ..worker.process import WorkerRun
-from ..worker.request import RemeshRequest
 from ..worker.transfer_request import STAGE, TransferredData
+from .mesh_source import read_source
 from .own_mesh import OwnMesh
 from .remesh_task import RemeshTask, prepare_in_steps
 from .result_making import ResultMaking
 from .source_track import SourceTrack
 from .steps import Steps
+from .transfer.layers import carry_the_same
 
 _SILENCE = 20.0  # seconds without news after which the user reads about it
 _STEPS = 0.05  # seconds of reading or making a mesh after which no other step is begun before the window answers
@@ -52,9 +55,10 @@ class BackgroundRun:
         self._task: RemeshTask | None = None
         self._reading: Steps[RemeshTask] | None = None
         self._solving: WorkerRun[RemeshResult] | None = None
-        self._request: RemeshRequest | None = None
+        self._keys: dict[str, bytes] = {}  # of the requests to worker processes, by kind
         self._result: RemeshResult | None = None
         self._transfer: WorkerRun[TransferredData] | None = None
+        self._carried: TransferredData | None = None
         self._making: ResultMaking | None = None
         self._waits = self._is_dropped = False
         if task is not None:
@@ -102,7 +106,7 @@ class BackgroundRun:
     @property
     def has_result(self) -> bool:
         """Whether all has ended well."""
-        return self._transfer is not None and self._transfer.has_result
+        return self._carried is not None or (self._transfer is not None and self._transfer.has_result)
 
     def poll(self) -> bool:
         """Looks how far the run is, without waiting, and does what is next; whether it has ended.
@@ -161,7 +165,7 @@ class BackgroundRun:
     @property
     def _is_between(self) -> bool:
         is_solved = self._solving is not None and self._solving.has_result
-        return is_solved and self._transfer is None and not self._is_dropped
+        return is_solved and self._transfer is None and self._carried is None and not self._is_dropped
 
     def _read(self, until: float) -> None:
         """Reads up to a time, but at least one step; begins to solve the task when it is there."""
@@ -184,36 +188,47 @@ class BackgroundRun:
 
     def _go_on(self) -> None:
         """What comes between the quads and what they take along, in two steps."""
-        assert self._solving is not None and self._request is not None
+        assert self._solving is not None
         if self._result is None:
             self._result = self._solving.result()
-            _known.keep(self._request, self._result)
+            _known_quads.keep(self._keys["remesh"], self._result)
         else:
             self._begin_transfer(self._result)
 
     def _begin_solving(self, task: RemeshTask) -> None:
         """A worker solves the task, unless a former run has done so."""
-        self._task, self._request = task, task.request()
-        known = _known.find(self._request)
+        self._task, request = task, task.request()
+        self._keys["remesh"] = key_of(request)
+        known = _known_quads.find(self._keys["remesh"])
         if known is None:
-            self._solving = _worker(self._request, "start")
+            self._solving = _worker(request, "start")
         else:
             self._result = known
             self._begin_transfer(known)
 
     def _begin_transfer(self, result: RemeshResult) -> None:
-        self._transfer = _worker(self.task.transfer_request(result), STAGE)
+        """A worker computes what the result takes along, unless a former run has done so."""
+        request = self.task.transfer_request(result)
+        self._keys["transfer"] = key_of(request)
+        self._carried = _known_data.find(self._keys["transfer"])
+        if self._carried is None:
+            self._transfer = _worker(request, STAGE)
 
     @property
     def status(self) -> str:
-        """What it does now, for example ``"Periodic field"``."""
+        """What it does now, for example ``"Finding edge directions"``."""
         if self.is_finished:
             return "Making the mesh" if self.is_building else "Done: go to Object Mode"
         if self.worker is None:
-            return "Go to Object Mode: the mesh is to be read" if self._waits else "Reading the mesh"
-        silence = self.worker.silent_seconds
-        text = self.worker.stage.replace("_", " ").capitalize()
-        return f"{text}, no news for {silence:.0f} s" if silence > _SILENCE else text
+            return "Go on in Object Mode" if self._waits else "Reading the mesh"
+        return in_words(self.worker.stage).capitalize()
+
+    @property
+    def silence(self) -> str:
+        """How long a worker has told nothing, for example ``"No news for 25 s"``; empty where that is nothing special."""
+        if self.worker is None or self.is_finished or self.worker.silent_seconds < _SILENCE:
+            return ""
+        return f"No news for {self.worker.silent_seconds:.0f} s"
 
     def result(self) -> RemeshResult:
         """The run's result; waits for the whole run, and raises what that raised, see :meth:`.process.WorkerRun.result`."""
@@ -224,11 +239,15 @@ class BackgroundRun:
     def carried(self) -> TransferredData:
         """What the result takes along, as :meth:`result`."""
         self.wait()
+        if self._carried is not None:
+            return self._carried
         if self._transfer is None:
             if self._solving is not None:
                 self._solving.result()  # which raises, but for one that was ended between the two halves
-            raise Cancelled(f"cancelled before {STAGE.replace('_', ' ')}")
-        return self._transfer.result()
+            raise Cancelled(f"cancelled before {in_words(STAGE)}")
+        self._carried = self._transfer.result()
+        _known_data.keep(self._keys["transfer"], self._carried)
+        return self._carried
 
     def find_source(self) -> bpy.types.Object:
         """The object that the result is for.
@@ -252,6 +271,19 @@ class BackgroundRun:
         )
         return can_be_left and context.object == self.source.find()
 
+    def has_changed_source(self, obj: bpy.types.Object) -> bool:
+        """Whether the source, in Object Mode, is another than when the run began, or carries something else."""
+        if self.source.has_changed(obj):
+            return True
+        layers = self.task.source.layers
+        if not self.source.was_touched or layers is None:
+            return False
+        try:
+            again = read_source(obj, bpy.context.evaluated_depsgraph_get(), kinds=layers.kinds)
+        except InputError:
+            return True
+        return again.layers is None or not carry_the_same(layers, again.layers)
+
     def require_same_mesh(self, obj: bpy.types.Object) -> None:
         """Raises InputError ``mesh_changed`` where a part's mesh is not the one any more that it is a part of."""
         if self.source.has_changed_mesh(obj):
@@ -271,7 +303,8 @@ def _worker(request: Request[Any], first_stage: str) -> WorkerRun[Any]:
 
 
 _current: BackgroundRun | None = None
-_known = KnownResults()
+_known_quads: KnownResults[RemeshResult] = KnownResults()
+_known_data: KnownResults[TransferredData] = KnownResults()
 
 
 def current() -> BackgroundRun | None:
@@ -281,7 +314,8 @@ def current() -> BackgroundRun | None:
 
 def forget_results() -> None:
     """Lets go of the results of former runs."""
-    _known.clear()
+    _known_quads.clear()
+    _known_data.clear()
 
 
 def start(task: RemeshTask | None, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:
@@ -305,6 +339,7 @@ def start(task: RemeshTask | None, obj: bpy.types.Object, mode: str = "OBJECT") 
     global _current
     assert _current is None
     _current = BackgroundRun(task, obj, mode)
+    bpy.app.handlers.depsgraph_update_post.append(_on_change)
     return _current
 
 
@@ -314,5 +349,12 @@ def forget() -> None:
     run, _current = _current, None
     if run is None:
         return
+    with contextlib.suppress(ValueError):  # loading a file takes it away
+        bpy.app.handlers.depsgraph_update_post.remove(_on_change)
     run.cancel()
     run.on_forget()
+
+
+def _on_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    if _current is not None:
+        _current.source.take_notice(depsgraph)

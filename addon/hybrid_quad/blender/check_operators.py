@@ -9,6 +9,7 @@ import bmesh
 import bpy
 import numpy as np
 
+from ..core import defect_names
 from ..core.check import Defect, check
 from ..core.edge_borders import edge_keys
 from .mesh_source import MeshSource, read_source
@@ -61,7 +62,7 @@ class OBJECT_OT_hybrid_quad_select_defect(_CheckOperator):
     def _act(self, obj: bpy.types.Object, source: MeshSource, defects: list[Defect]) -> set[str]:
         found = next((defect for defect in defects if defect.code == self.code and len(defect)), None)
         if found is None:
-            self.report({"WARNING"}, f"There is no {self.code.replace('_', ' ')} (any more)")
+            self.report({"WARNING"}, f"There are no {defect_names.in_words(self.code)} (any more)")
             return {"CANCELLED"}
         mesh = obj.data
         if (len(mesh.vertices), len(mesh.polygons)) != (len(source.vertices), len(source.polygons.sizes)):
@@ -83,10 +84,9 @@ def read_check(obj: bpy.types.Object) -> list[dict[str, Any]] | None:
 
 
 def describe_row(row: dict[str, Any]) -> str:
-    """A line of the list, for example ``"2 non manifold edges: repaired"``."""
+    """A line of the list, for example ``"2 flipped faces: repaired"``."""
     fate = "refused" if not row["repairable"] else "left" if row["kept"] else "repaired"
-    count = f"{row['elements']:,} x " if row["elements"] else ""
-    return f"{count}{row['code'].replace('_', ' ')}: {fate}"
+    return f"{defect_names.in_words(row['code'], row['elements'])}: {fate}"
 
 
 def _select(mesh: bpy.types.Mesh, source: MeshSource, defect: Defect) -> None:

@@ -10,8 +10,10 @@ from .check_operators import (
     describe_row,
     read_check,
 )
-from .panel_base import HybridQuadPanel
+from .panel_base import HybridQuadPanel, draw_text
 from .repair_operators import OBJECT_OT_hybrid_quad_repair
+
+_TEXT = 0.7  # share of the width; the rest is for the button
 
 
 class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
@@ -29,8 +31,8 @@ class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
             layout.label(text="Nothing is wrong with it", icon="CHECKMARK")
         column = layout.column(align=True)
         for row in rows or ():
-            line = column.split(factor=0.7)
-            line.label(text=describe_row(row), icon="INFO" if row["repairable"] else "ERROR")
+            line = column.split(factor=_TEXT)
+            draw_text(line, describe_row(row), "INFO" if row["repairable"] else "ERROR", share=_TEXT)
             if row["elements"]:
                 name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
                 line.operator(name, text="Select", icon=icon).code = row["code"]

@@ -10,7 +10,7 @@ from ..core import native
 from . import background_run
 from .copy_settings import OBJECT_OT_hybrid_quad_copy_settings
 from .operators import OBJECT_OT_hybrid_quad_cancel, OBJECT_OT_hybrid_quad_remesh
-from .panel_base import HybridQuadPanel, settings_layout
+from .panel_base import HybridQuadPanel, draw_text, settings_layout
 from .presets import VIEW3D_PT_hybrid_quad_presets
 from .properties import SIZE_SETTINGS
 from .selected_objects import OBJECT_OT_hybrid_quad_remesh_selected
@@ -41,8 +41,7 @@ class VIEW3D_PT_hybrid_quad(HybridQuadPanel, bpy.types.Panel):
             layout.label(text="Select a mesh object", icon="INFO")
             return
         if not native.is_there():
-            layout.label(text="The compiled part is missing:", icon="ERROR")
-            layout.label(text="install the zip for this Blender and system")
+            draw_text(layout, "The compiled part is missing: install the zip for this Blender and system", "ERROR")
         settings = context.object.hybrid_quad
         column = layout.column()
         column.active = settings.part.region == "WHOLE" or not settings.part.use_border_length
@@ -65,6 +64,8 @@ def _draw_run(layout: Any, context: bpy.types.Context, run: background_run.Backg
     box.use_property_split = False
     box.label(text=run.source.name, icon="MOD_REMESH")
     box.label(text=run.status)
+    if run.silence:
+        box.label(text=run.silence, icon="TIME")
     if run.is_finished:
         box.operator(OBJECT_OT_hybrid_quad_cancel.bl_idname, text="Drop the Result", icon="X")
         return

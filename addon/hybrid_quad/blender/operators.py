@@ -9,12 +9,14 @@ from typing import Any
 
 import bpy
 
-from ..cli.messages import describe_defect, describe_elements, what_became_of
-from ..core import native
+from ..cli.messages import describe_elements, what_became_of
+from ..core import defect_names, native
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.remesh import RemeshResult
+from ..core.stage_names import StageWatch, while_in
 from ..worker.death import WorkerDied
-from ..worker.transfer_request import TransferredData
+from ..worker.stage_errors import told_with_stage
+from ..worker.transfer_request import STAGE, TransferredData
 from . import background_run
 from .background_run import BackgroundRun
 from .modes import out_of, out_of_for_change
@@ -46,15 +48,17 @@ class RemeshOperator(ActiveMeshOperator):
 
     def _now(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """A whole run."""
+        watch = StageWatch()
         try:
             # Sculpt Mode keeps changes to itself that the depsgraph does not know yet.
             with out_of(obj, "SCULPT"):
                 task = prepare_task(obj, context.evaluated_depsgraph_get())
-            result = task.solve()
+            result = task.solve(progress=watch)
+            watch.stage = STAGE
             with out_of_for_change(obj):
                 return self._finish(context, obj, task, result, Placement.of_settings(obj))
         except Exception as error:
-            return self._fail(error)
+            return self._fail(told_with_stage(error, watch.stage))
 
     def _begin(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """Leaves a run to worker processes; the operator is then modal. Quads that are known already are not made again."""
@@ -122,7 +126,7 @@ class RemeshOperator(ActiveMeshOperator):
         if self._run.task.part is not None:
             self._run.require_same_mesh(obj)
             return Placement(self._run.in_place, takes_selection=context.view_layer.objects.active == obj)
-        is_changed = obj.mode != "OBJECT" or self._run.source.has_changed(obj)
+        is_changed = obj.mode != "OBJECT" or self._run.has_changed_source(obj)
         if is_changed:
             self.report(
                 {"WARNING"},
@@ -148,7 +152,7 @@ class RemeshOperator(ActiveMeshOperator):
         target = place_result(context, obj, task, result, placement, carried, built)
         self._target = target.name
         for defect in result.report["defects"]:
-            self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_defect(defect)}")
+            self.report({"INFO"}, f"{what_became_of(defect).capitalize()}: {describe_found(defect)}")
         for warning in result.report["warnings"]:
             self.report({"WARNING"}, warning)
         irregular = result.report["irregular_vertices"]
@@ -235,9 +239,13 @@ def message_of(error: BaseException) -> str:
         return f"Nothing was changed: {error}"
     traceback.print_exception(type(error), error, error.__traceback__)
     kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
-    stage = getattr(error, "stage", "").replace("_", " ")
-    where = f" during {stage}" if stage else ""
+    where = f" {while_in(error.stage)}" if isinstance(error, InternalError) and error.stage else ""
     return f"Internal error{where}, nothing was changed: {kind}{error}. Please report it with the mesh"
+
+
+def describe_found(defect: dict[str, Any]) -> str:
+    """A defect that a run found, in its JSON form, for example ``"2 flipped faces (turned around)"``."""
+    return f"{defect_names.in_words(defect['code'], len(defect['elements']))} ({defect['remedy']})"
 
 
 def draw_menu_entry(self: Any, _context: bpy.types.Context) -> None:

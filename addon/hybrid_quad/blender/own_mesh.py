@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import uuid
+import weakref
 from collections.abc import Iterator
+from typing import Any
 
 import bpy
+from bpy.app.handlers import persistent
 
 from ..core.errors import InputError
 
@@ -32,6 +35,7 @@ class OwnMesh:
         self._of, self._name, self._token = of, mesh.name, uuid.uuid4().hex
         mesh[_TOKEN] = self._token
         mesh.name = _NAME
+        _living.add(self)
 
     def mesh(self) -> bpy.types.Mesh:
         """The mesh.
@@ -60,6 +64,7 @@ class OwnMesh:
     def release(self) -> bpy.types.Mesh:
         """The mesh, which belongs to the caller from now on; raises as :meth:`mesh`."""
         mesh = self.mesh()
+        _living.discard(self)
         del mesh[_TOKEN]
         mesh.name = self._name
         return mesh
@@ -70,10 +75,53 @@ class OwnMesh:
 
     def remove(self) -> None:
         """Removes the mesh, if it is still there."""
+        _living.discard(self)
         found = self._find()
         if found is not None:
             bpy.data.meshes.remove(found)
 
     def _find(self) -> bpy.types.Mesh | None:
-        near = (mesh for mesh in bpy.data.meshes if mesh.name.startswith(_NAME))
-        return next((mesh for mesh in near if mesh.get(_TOKEN) == self._token), None)
+        return next((mesh for token, mesh in _all() if token == self._token), None)
+
+    def is_of(self, token: str) -> bool:
+        """Whether a mesh with this token is this one's."""
+        return token == self._token
+
+
+_living: weakref.WeakSet[OwnMesh] = weakref.WeakSet()
+
+
+def remove_strays() -> None:
+    """Removes what nobody has any more.
+
+    An undo step that was pushed while there was such a mesh has it, even without users, and brings it back; so may a file that was
+    saved from such a step after a crash.
+    """
+    for mesh in [mesh for token, mesh in _all() if not any(own.is_of(token) for own in _living)]:
+        bpy.data.meshes.remove(mesh)
+
+
+def register() -> None:
+    """Looks for strays wherever they may come from."""
+    for handlers in _handlers():
+        handlers.append(_on_change_of_file)
+
+
+def unregister() -> None:
+    """Looks no more; safe where it never did."""
+    for handlers in _handlers():
+        with contextlib.suppress(ValueError):
+            handlers.remove(_on_change_of_file)
+
+
+def _all() -> list[tuple[str, bpy.types.Mesh]]:
+    return [(mesh[_TOKEN], mesh) for mesh in bpy.data.meshes if mesh.name.startswith(_NAME) and _TOKEN in mesh]
+
+
+def _handlers() -> tuple[Any, ...]:
+    return bpy.app.handlers.undo_post, bpy.app.handlers.redo_post, bpy.app.handlers.load_post
+
+
+@persistent
+def _on_change_of_file(*_arguments: Any) -> None:
+    remove_strays()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .panel_base import HybridQuadPanel, settings_layout
+from .panel_base import HybridQuadPanel, draw_text, settings_layout
 from .part_pick import OBJECT_OT_hybrid_quad_pick_face_set
 from .part_source import knows_face_sets
 
@@ -28,7 +28,7 @@ class VIEW3D_PT_hybrid_quad_part(HybridQuadPanel, bpy.types.Panel):
             row.prop(settings, "face_set", text="Number")
             row.operator(OBJECT_OT_hybrid_quad_pick_face_set.bl_idname, text="", icon="EYEDROPPER")
             if not knows_face_sets():
-                column.label(text="Add-ons see face sets from Blender 3.5 on", icon="ERROR")
+                draw_text(column, "Add-ons see face sets from Blender 3.5 on", "ERROR")
         elif settings.region == "ATTRIBUTE":
             column.prop_search(settings, "attribute", context.object.data, "attributes", text="Name")
         column.prop(settings, "use_inverted")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 
 import bpy
@@ -17,6 +18,7 @@ from . import (
     command,
     copy_settings,
     operators,
+    own_mesh,
     panels,
     part_pick,
     presets,
@@ -64,18 +66,24 @@ def register() -> None:
         type=preview_settings.HybridQuadPreviewSettings, name="Hybrid Quad", description="What is drawn over objects"
     )
     sessions.register()
+    own_mesh.register()
     run_display.register()
     painting.register()
     for owner, entry in ENTRIES:
         getattr(bpy.types, owner).append(entry)
     command.register()
+    if not bpy.app.binary_path:
+        # Blender as a module: some versions (4.2, 4.5) crash or hang as they end with a class registered.
+        atexit.register(unregister)
 
 
 def unregister() -> None:
     """Safe to call where nothing is registered."""
+    atexit.unregister(unregister)
     background_run.forget()
     background_run.forget_results()
     sessions.unregister()
+    own_mesh.unregister()
     command.unregister()
     # Blender cannot say whether a menu has an entry; removing one that is not there does no harm.
     for owner, entry in ENTRIES:

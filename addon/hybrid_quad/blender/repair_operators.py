@@ -5,11 +5,11 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..cli.messages import describe_defect, what_became_of
+from ..cli.messages import what_became_of
 from ..core import native
 from ..core.repair import Repaired, repair
 from .mesh_source import MeshSource, read_source
-from .operators import ActiveMeshOperator, message_of
+from .operators import ActiveMeshOperator, describe_found, message_of
 
 
 class OBJECT_OT_hybrid_quad_repair(ActiveMeshOperator):
@@ -38,7 +38,7 @@ class OBJECT_OT_hybrid_quad_repair(ActiveMeshOperator):
         for defect in found.defects:
             row = defect.as_json()
             became = what_became_of(row).capitalize()
-            self.report({"WARNING"} if defect.kept else {"INFO"}, f"{became}: {describe_defect(row)}")
+            self.report({"WARNING"} if defect.kept else {"INFO"}, f"{became}: {describe_found(row)}")
         lost = len(source.vertices) - len(np.unique(found.vertex_origins[found.vertex_origins >= 0]))
         self.report(
             {"INFO"}, f'"{copy.name}": {len(found.triangles):,} triangles; {lost:,} vertices are not used any more'

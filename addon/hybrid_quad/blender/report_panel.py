@@ -7,7 +7,8 @@ from typing import Any
 import bpy
 
 from ..cli.messages import what_became_of
-from .panel_base import HybridQuadPanel, draw_figure
+from ..core import defect_names
+from .panel_base import HybridQuadPanel, draw_figure, draw_text
 from .result_mesh import read_report
 
 
@@ -31,11 +32,10 @@ class VIEW3D_PT_hybrid_quad_report(HybridQuadPanel, bpy.types.Panel):
             draw_figure(rows, name, value)
         for defect in report.get("defects", ()):
             became = what_became_of(defect).capitalize()
-            self.layout.label(
-                text=f"{became}: {defect['code'].replace('_', ' ')} ({len(defect['elements'])})", icon="INFO"
-            )
+            name = defect_names.in_words(defect["code"], len(defect["elements"]))
+            draw_text(self.layout, f"{became}: {name}", "INFO")
         for warning in report.get("warnings", ()):
-            self.layout.label(text=warning, icon="ERROR")
+            draw_text(self.layout, warning, "ERROR")
 
 
 def _rows_of(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -22,7 +22,8 @@ class RunDisplay:
     def update(self, context: bpy.types.Context) -> None:
         """Shows how far the run is, where that has changed."""
         done = f"{100 * self._run.fraction:.0f} %"
-        text = f'Remeshing "{self._run.source.name}": {self._run.status}, {done}    {_HOW_TO_CANCEL}'
+        now = ". ".join(part for part in (f"{self._run.status}, {done}", self._run.silence) if part)
+        text = f'Remeshing "{self._run.source.name}": {now}    {_HOW_TO_CANCEL}'
         if self._run.is_finished and not self._run.is_building:
             text = f'"{self._run.source.name}" is remeshed: go to Object Mode to get the result'
         if text == self._text and context.workspace.name in self._workspaces:

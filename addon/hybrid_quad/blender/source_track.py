@@ -40,6 +40,8 @@ class SourceTrack:
     ----------
     name : str
         Of the object, then.
+    was_touched : bool
+        Whether Blender told of a change of the mesh since then, be it of what no digest has, as the weights of vertex groups.
     """
 
     def __init__(self, obj: bpy.types.Object) -> None:
@@ -47,6 +49,7 @@ class SourceTrack:
         self._identity = identity(obj)
         self._mesh_name: str = obj.data.name
         self._state = _state(obj)
+        self.was_touched = False
 
     def find(self) -> bpy.types.Object | None:
         """The object, even if it was renamed; None where it is in no scene any more."""
@@ -57,6 +60,15 @@ class SourceTrack:
         if found is None or found.type != "MESH" or not found.users_scene:
             return None
         return found
+
+    def take_notice(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Of what Blender tells about changes."""
+        if self.was_touched or not any(update.is_updated_geometry for update in depsgraph.updates):
+            return
+        obj = self.find()
+        self.was_touched = obj is not None and any(
+            update.is_updated_geometry and update.id.original in (obj, obj.data) for update in depsgraph.updates
+        )
 
     def has_changed(self, obj: bpy.types.Object) -> bool:
         """Whether the object's mesh or modifiers are others than when the run began. Only in Object Mode."""
@@ -77,8 +89,10 @@ def identity(obj: bpy.types.Object) -> int:
 
 
 def _state(obj: bpy.types.Object) -> tuple[bytes, bytes]:
-    """Digests of an object's mesh, and of its modifiers' settings."""
+    """Digests of an object's mesh, and of its modifiers' settings and the names of what it has."""
     digest = hashlib.blake2b()
+    digest.update(repr([slot.name for slot in obj.material_slots]).encode())
+    digest.update(repr(obj.vertex_groups.keys()).encode())
     for modifier in obj.modifiers:
         digest.update(repr(_settings(modifier)).encode())
     with readable_mesh(obj) as mesh:
@@ -98,6 +112,13 @@ def _mesh_state(mesh: bpy.types.Mesh) -> bytes:
         for name in _EDGE_MARKS:
             if name in bpy.types.MeshEdge.bl_rna.properties:
                 _add(digest, mesh.edges, name, 1, np.bool_ if name.startswith("use_") else np.float32)
+    for layer in mesh.uv_layers:
+        if layer.name not in mesh.attributes:  # before Blender 3.5
+            digest.update(layer.name.encode())
+            _add(digest, layer.data, "uv", 2, np.float32)
+    for key in mesh.shape_keys.key_blocks if mesh.shape_keys else ():
+        digest.update(key.name.encode())
+        _add(digest, key.data, "co", 3, np.float32)
     for attribute in mesh.attributes:
         if attribute.data_type in _ATTRIBUTES and not attribute.name.startswith(_DISPLAY_ATTRIBUTES):
             digest.update(f"{attribute.name} {attribute.domain} {attribute.data_type}".encode())

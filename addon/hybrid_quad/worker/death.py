@@ -5,6 +5,8 @@ from __future__ import annotations
 import signal
 import sys
 
+from ..core.stage_names import while_in
+
 # Windows ends a process that failed with the number of the exception.
 _WINDOWS_CAUSES = {
     0xC0000005: "it crashed: access violation",
@@ -13,6 +15,8 @@ _WINDOWS_CAUSES = {
     0xC0000017: "memory ran out",
     0xC0000409: "it crashed: stack buffer overrun",
 }
+# What programs write where an allocation failed, before they end in whatever way.
+_NO_MEMORY = ("bad_alloc", "MemoryError", "Cannot allocate memory")
 _CAUSES = {
     "SIGKILL": "it was killed, perhaps by the system because memory ran out",
     "SIGTERM": "it was told to end by another program",
@@ -25,7 +29,7 @@ _CAUSES = {
 
 
 class WorkerDied(RuntimeError):
-    """The process of a run ended before the run did.
+    """The process of a run ended before the run did, or was ended as it hung.
 
     Attributes
     ----------
@@ -37,8 +41,11 @@ class WorkerDied(RuntimeError):
         The end of what it wrote to its error stream.
     """
 
-    def __init__(self, stage: str, status: int, log: str = "") -> None:
-        super().__init__(f"the run ended during {stage.replace('_', ' ')}: {cause_of(status)}")
+    def __init__(self, stage: str, status: int, log: str = "", cause: str = "") -> None:
+        cause = cause or cause_of(status)
+        if any(text in log for text in _NO_MEMORY):
+            cause = f"memory ran out; {cause}"
+        super().__init__(f"the run ended {while_in(stage)}: {cause}")
         self.stage = stage
         self.status = status
         self.log = log

@@ -19,12 +19,15 @@ from pathlib import Path
 from typing import Any, BinaryIO, Generic, TypeVar
 
 from ..core.errors import Cancelled
+from ..core.stage_names import while_in
 from .bundle import load_fields
 from .death import WorkerDied
+from .idleness import Idleness
 from .interpreter import worker_command
 from .kinds import Request
 from .messages import Message, decode, error_of
 from .run import REQUEST, RESULT
+from .stage_errors import told_with_stage
 
 Result = TypeVar("Result")
 
@@ -38,6 +41,7 @@ _GRACE = 5.0  # seconds past its time limit after which a run that should have e
 _LEAVING = 1.0  # seconds that a killed process gets to be gone
 _INTERVAL = 0.01  # seconds between two looks while somebody waits
 _LOG_SHOWN = 4000  # characters
+_HANGS = 60.0  # seconds without news and without any use of a processor after which a run is ended
 
 
 class WorkerSeat:
@@ -148,6 +152,7 @@ class WorkerRun(Generic[Result]):
         self._seat = seat or WorkerSeat(temporary_folder=temporary_folder, command=command)
         self._process, self._messages, self._folder = self._seat.process, self._seat.messages, self._seat.folder
         self._seat.hand_over(request)
+        self._idleness = Idleness(self._process.pid)
 
     @property
     def has_result(self) -> bool:
@@ -176,8 +181,11 @@ class WorkerRun(Generic[Result]):
         elif has_ended:
             self._end(WorkerDied(self.stage, self._process.returncode, self._end_of_log()))
         elif self._limit is not None and time.monotonic() - self._began > self._limit + _GRACE:
-            text = f"the time limit of {self._limit:g} s is over, and the run did not answer any more during "
-            self._end(Cancelled(text + self._stage_in_words, "time_limit"))
+            text = f"the time limit of {self._limit:g} s is over, and the run did not answer any more "
+            self._end(Cancelled(text + while_in(self.stage), "time_limit"))
+        elif self._idleness.seconds() > _HANGS:
+            cause = f"it hung: for {_HANGS:.0f} s it told nothing and used no processor"
+            self._end(WorkerDied(self.stage, 0, self._end_of_log(), cause))
         return self.is_finished
 
     def cancel(self) -> None:
@@ -186,7 +194,7 @@ class WorkerRun(Generic[Result]):
         A run that has ended before stays as it is.
         """
         if not self.is_finished:
-            self._end(Cancelled(f"cancelled during {self._stage_in_words}"))
+            self._end(Cancelled(f"cancelled {while_in(self.stage)}"))
 
     def wait(self, timeout: float | None = None) -> bool:
         """Returns when the run has ended, or after some seconds; whether it has."""
@@ -213,10 +221,6 @@ class WorkerRun(Generic[Result]):
         assert self._result is not None
         return self._result
 
-    @property
-    def _stage_in_words(self) -> str:
-        return self.stage.replace("_", " ")
-
     def _read_messages(self) -> Message | None:
         """Takes notice of progress; the worker's last word, if it has been said."""
         while True:
@@ -231,15 +235,13 @@ class WorkerRun(Generic[Result]):
             if message["event"] != "progress":
                 return message
             self._news = time.monotonic()
-            self.stage, self.fraction = str(message["stage"]), float(message["fraction"])
+            self._idleness.reset()
+            self.stage, self.fraction = str(message["stage"]) or self.stage, float(message["fraction"])
 
     def _take(self, last: Message) -> None:
         """Ends the run with what its last word announces."""
         if last["event"] == "error":
-            error = error_of(last)
-            if isinstance(error, MemoryError):
-                error = MemoryError(f"during {self._stage_in_words}")
-            self._end(error)
+            self._end(told_with_stage(error_of(last), self.stage))
             return
         try:
             self._result = self._result_type(**load_fields(self._folder / RESULT))

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from ..core.errors import Cancelled, InternalError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_names import while_in
 from ..core.surface_places import TriangleMesh
 from ..core.surface_walk import BoolArray
 from ..core.transfer.correspondence import Correspondence
@@ -148,12 +149,16 @@ class TransferRequest:
 
     def save(self, path: Path) -> None:
         """Writes the request to a file for :func:`.kinds.load_request`."""
-        arrays, values = pack({field.name: getattr(self, field.name) for field in dataclasses.fields(self)})
+        arrays, values = self.as_bundle()
         save_bundle(path, arrays, {"kind": self.kind, **values})
+
+    def as_bundle(self) -> tuple[Arrays, dict[str, Any]]:
+        """All of it as arrays and values for JSON; :meth:`of_bundle` is the way back."""
+        return pack({field.name: getattr(self, field.name) for field in dataclasses.fields(self)})
 
     @classmethod
     def of_bundle(cls, arrays: Arrays, values: dict[str, Any]) -> TransferRequest:
-        """The request that was saved, with the same bits."""
+        """The request that :meth:`as_bundle` described, with the same bits."""
         own = unpack(arrays, {name: value for name, value in values.items() if name != "kind"})
         polygons, edges, edge_values, *rest = own["source_edges"]
         own["surface"] = TriangleMesh(*own["surface"])
@@ -181,7 +186,7 @@ class _Steps:
 
     def __call__(self) -> None:
         if self._cancel is not None and self._cancel():
-            raise Cancelled(f"cancelled during {STAGE.replace('_', ' ')}")
+            raise Cancelled(f"cancelled {while_in(STAGE)}")
         if self._progress is not None:
             self._progress(STAGE, self._done / self._count)
         self._done += 1

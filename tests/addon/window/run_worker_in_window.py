@@ -23,6 +23,8 @@ from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_p
 
 import hybrid_quad
 from hybrid_quad.blender import background_run
+from hybrid_quad.core.stage_names import in_words
+from hybrid_quad.worker import process
 from scenes import activate, add_cube, add_sphere
 
 LONG_RUN_QUADS = 150_000
@@ -41,7 +43,11 @@ def steps() -> Iterator[float]:
         ended_in_every_stage,
         ended_by_the_button,
         killed,
+        out_of_memory,
+        memory_limit_reached,
         hanging,
+        hanging_past_its_time_limit,
+        hanging_for_good,
         source_deleted,
         source_edited,
         source_renamed,
@@ -130,7 +136,7 @@ def killed() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     run = background_run.current()
     yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGKILL))
-    expect_said(run.worker.stage, "SIGKILL")
+    expect_said(in_words(run.worker.stage), "SIGKILL", "memory")
     yield from take_picture("5_killed.png")
     press("ESC")  # the message
     yield 0.3
@@ -140,6 +146,58 @@ def hanging() -> Iterator[float]:
     yield from start(LONG_RUN_QUADS)
     os.kill(background_run.current().worker.process_id, signal.SIGSTOP)
     yield from expect_unchanged_after(lambda: press("ESC"))
+
+
+def hanging_past_its_time_limit() -> Iterator[float]:
+    """Nobody presses anything."""
+    bpy.data.objects["Sphere"].hybrid_quad.time_limit = 4
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGSTOP))
+    expect_said("did not answer", in_words(run.worker.stage))
+    press("ESC")  # the message
+    yield 0.3
+
+
+def hanging_for_good() -> Iterator[float]:
+    """Nobody presses anything, and there is no limit."""
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    hangs, process._HANGS = process._HANGS, 3.0
+    yield from expect_unchanged_after(lambda: os.kill(run.worker.process_id, signal.SIGSTOP))
+    process._HANGS = hangs
+    expect_said("it hung", in_words(run.worker.stage))
+    press("ESC")  # the message
+    yield 0.3
+
+
+def out_of_memory() -> Iterator[float]:
+    """The system gives the worker no more."""
+    import resource
+
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    used = int(Path(f"/proc/{run.worker.process_id}/statm").read_text().split()[0]) * resource.getpagesize()
+    limit = used + 2**25
+
+    def take_memory_away() -> None:
+        resource.prlimit(run.worker.process_id, resource.RLIMIT_AS, (limit, limit))
+
+    yield from expect_unchanged_after(take_memory_away)
+    expect_said("memory ran out", in_words(run.worker.stage))
+    press("ESC")
+    yield 0.3
+
+
+def memory_limit_reached() -> Iterator[float]:
+    """The one of the settings."""
+    bpy.data.objects["Sphere"].hybrid_quad.memory_limit = 120
+    yield from start(LONG_RUN_QUADS)
+    run = background_run.current()
+    yield from expect_unchanged_after(lambda: None)
+    expect_said("memory limit", in_words(run.worker.stage))
+    press("ESC")
+    yield 0.3
 
 
 def source_deleted() -> Iterator[float]:

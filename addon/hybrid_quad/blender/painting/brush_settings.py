@@ -78,6 +78,11 @@ class HybridQuadBrushSettings(bpy.types.PropertyGroup):
         soft_max=500,
         subtype="PIXEL",
     )
+    use_pressure_size: bpy.props.BoolProperty(
+        name="Radius Pressure",
+        description="The harder the pen is pressed, the larger the brush, up to its radius",
+        default=False,
+    )
     strength: bpy.props.FloatProperty(**STRENGTH)
     use_pressure_strength: bpy.props.BoolProperty(
         name="Strength Pressure", description="The harder the pen is pressed, the stronger the stroke", default=True

@@ -2,7 +2,7 @@
 
 # No "from __future__ import annotations" here: Blender reads the properties from the annotations' values.
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -25,11 +25,33 @@ _LINE_PIXELS = 8.0  # between points of painted lines
 _GAP = 8.0
 _STEPS_PER_RADIUS = 16  # of strokes that scripts give
 
+_SMALLEST = 0.05  # part of the radius, however softly the pen is pressed
+
 MODES = (
     ("NORMAL", "Normal", "Paint as the settings say"),
     ("INVERT", "Invert", "Erase; for density: the opposite"),
     ("SMOOTH", "Smooth", "Even out what is painted"),
 )
+
+
+class Pressure(NamedTuple):
+    """What a pen's pressure counts for.
+
+    Attributes
+    ----------
+    strength, size : bool
+        Of the brush.
+    """
+
+    strength: bool
+    size: bool
+
+    def on(self, place: PenPlace, pressure: float) -> PenPlace:
+        """A place where the pen is pressed so hard; a mouse is pressed by 1."""
+        pressure = min(max(pressure, 0.0), 1.0)
+        return place._replace(
+            pressure=pressure if self.strength else 1.0, size=max(pressure, _SMALLEST) if self.size else 1.0
+        )
 
 
 def problem_of(context: bpy.types.Context) -> str:
@@ -143,7 +165,11 @@ class HYBRID_QUAD_OT_paint_guide(PaintingOperator):
         except WrongAttributeError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self._pixels, self._use_pressure = float(brush.size), brush.use_pressure_strength
+        self._pixels = float(brush.size)
+        self._use_pressure = Pressure(
+            strength=brush.use_pressure_strength,
+            size=brush.use_pressure_size and self.kind in ("DIRECTION", "DENSITY"),
+        )
         self._stroke: PaintStroke | None = None
         self._mouse: Any = None
         self._seen: Any = None
@@ -225,12 +251,7 @@ class HYBRID_QUAD_OT_paint_guide(PaintingOperator):
         if self._seen is not None and (seen - self._seen).length > _GAP * radius / self._pixels * max(step, 1):
             self._stroke.lift()
         self._seen = seen
-        pressure = event.pressure if self._use_pressure else 1.0
-        self._stroke.add(_pressed(place, pressure))
-
-
-def _pressed(place: PenPlace, pressure: float) -> PenPlace:
-    return place._replace(pressure=min(max(pressure, 0.0), 1.0))
+        self._stroke.add(self._use_pressure.on(place, event.pressure))
 
 
 CLASSES = (HYBRID_QUAD_OT_paint_guide,)

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..panel_base import HybridQuadPanel
+from ..panel_base import HybridQuadPanel, draw_text
 from . import stored_values
 from .brush_settings import KINDS
 from .density_operator import HYBRID_QUAD_OT_clear_painted, HYBRID_QUAD_OT_density_from_layer
@@ -37,16 +37,17 @@ class VIEW3D_PT_hybrid_quad_painting(HybridQuadPanel, bpy.types.Panel):
             ("COLOR", "Color", bool(obj.data.color_attributes)),
         ):
             part = row.row(align=True)
-            part.enabled = is_there
+            part.active = is_there  # not disabled: pressed, it says what is missing
             part.operator(HYBRID_QUAD_OT_density_from_layer.bl_idname, text=name).source = source
 
 
 def draw_tool_button(self: Any, context: bpy.types.Context) -> None:
     """Top of the panel of guides."""
-    button = self.layout.row()
-    button.enabled = context.mode in ("OBJECT", "SCULPT")
-    depress = button.enabled and is_tool_active(context)
-    button.operator("wm.tool_set_by_id", text="Paint Guides", icon="BRUSH_DATA", depress=depress).name = TOOL
+    if context.mode not in ("OBJECT", "SCULPT"):
+        draw_text(self.layout, "Guides are painted in Object Mode and Sculpt Mode", "INFO")
+        return
+    depress = is_tool_active(context)
+    self.layout.operator("wm.tool_set_by_id", text="Paint Guides", icon="BRUSH_DATA", depress=depress).name = TOOL
 
 
 def _state_of(obj: bpy.types.Object, kind: str) -> str:

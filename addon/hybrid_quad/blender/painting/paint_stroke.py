@@ -150,7 +150,7 @@ class PaintStroke:
         for axes in self._mirrors:
             for line in on_surface:
                 count = len(line.points)
-                dabs = Dabs(line.points, np.zeros((count, 3)), np.zeros(count, np.int64), np.ones(count))
+                dabs = Dabs(line.points, np.zeros((count, 3)), np.zeros(count, np.int64), *np.ones((2, count)))
                 result.append(line._replace(points=self.surface.mirrored(dabs, axes).positions))
         return result
 

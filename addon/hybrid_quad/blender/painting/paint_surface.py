@@ -188,6 +188,7 @@ class PaintSurface:
             np.divide(tangents, length, out=np.zeros_like(tangents), where=length > 1e-6),
             np.array([place.polygon for place in there], np.int64),
             kept.strengths,
+            kept.sizes,
         )
 
     def shown_points(self) -> FloatArray:

@@ -36,8 +36,10 @@ def draw_settings(context: bpy.types.Context, layout: Any, _tool: Any, *, extra:
         return
     brush = context.workspace.hybrid_quad_brush
     layout.prop(brush, "kind", text="")
-    layout.prop(brush, "size", slider=True)
+    row = layout.row(align=True)
+    row.prop(brush, "size", slider=True)
     if brush.kind in ("DIRECTION", "DENSITY"):
+        row.prop(brush, "use_pressure_size", text="", icon="STYLUS_PRESSURE")
         row = layout.row(align=True)
         row.prop(brush, "strength", slider=True)
         row.prop(brush, "use_pressure_strength", text="", icon="STYLUS_PRESSURE")

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..panel_base import HybridQuadPanel, draw_figure, settings_layout
+from ..panel_base import HybridQuadPanel, draw_figure, draw_text, settings_layout
 from . import sessions
 from .limit import OBJECT_OT_hybrid_quad_apply_subdivision
 from .session import Session
@@ -47,7 +47,7 @@ class VIEW3D_PT_hybrid_quad_preview(HybridQuadPanel, bpy.types.Panel):
             rows.label(text="No singularities", icon="CHECKMARK")
         rows.label(text=f"About {found.report['wanted_quads']:,.0f} quads")
         for warning in found.report["warnings"]:
-            rows.label(text=warning, icon="ERROR")
+            draw_text(rows, warning, "ERROR")
 
 
 class VIEW3D_PT_hybrid_quad_limit(HybridQuadPanel, bpy.types.Panel):
@@ -77,9 +77,9 @@ class VIEW3D_PT_hybrid_quad_limit(HybridQuadPanel, bpy.types.Panel):
 
 def _draw_state(layout: Any, session: Session[Any]) -> None:
     if session.error:
-        layout.label(text=session.error, icon="ERROR")
+        draw_text(layout, session.error, "ERROR")
     elif session.status == "Waiting" and bpy.context.mode.startswith("EDIT"):
-        layout.label(text="Leave Edit Mode to see the change", icon="INFO")
+        draw_text(layout, "Leave Edit Mode to see the change", "INFO")
     elif session.is_busy:
         layout.label(text=session.status, icon="SORTTIME")
 
@@ -89,7 +89,7 @@ def _draw_distance(layout: Any) -> None:
     if sessions.limit.session.result is None:
         return
     if distance is None:
-        layout.label(text="Name the object that the quads were made of", icon="INFO")
+        draw_text(layout, "Name the object that the quads were made of", "INFO")
         return
     rows = layout.column(align=True)
     for name, value in (

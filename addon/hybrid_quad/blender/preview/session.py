@@ -8,6 +8,7 @@ from typing import Any, Generic, TypeVar
 
 import bpy
 
+from ...core.stage_names import in_words
 from ...worker.interpreter import worker_command
 from ...worker.kinds import Request
 from ...worker.process import WorkerRun, WorkerSeat
@@ -66,10 +67,10 @@ class Session(Generic[Result]):
 
     @property
     def status(self) -> str:
-        """What goes on, for example ``"Frame field"``; empty where nothing does."""
+        """What goes on, for example ``"Finding edge directions"``; empty where nothing does."""
         if self._worker is None:
             return "Waiting" if self._changed_at is not None else ""
-        return self._worker.stage.replace("_", " ").capitalize()
+        return in_words(self._worker.stage).capitalize()
 
     def target(self) -> bpy.types.Object | None:
         """The object that the result belongs to, if it is still there."""

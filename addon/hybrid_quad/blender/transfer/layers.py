@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import bpy
+import numpy as np
 
 from ...core.mesh_arrays import FloatArray
 from ...core.part_weld import PartResult
@@ -68,6 +69,29 @@ class SourceLayers:
         lost = self.keys.lost if self.keys else ()
         said = [f'Shape key "{name}" is left behind: with it, the modifiers make other vertices' for name in lost]
         return said + [f'Attribute "{name}" is left behind: its type is not known' for name in self.attributes.unknown]
+
+
+# What Blender may change without any change of the shape.
+_CARRIED = ("materials", "faces", "uv_maps", "attributes", "mask", "normals", "vertex_marks", "groups")
+
+
+def carry_the_same(one: SourceLayers, other: SourceLayers) -> bool:
+    """Whether two readings of a source differ at most in their places."""
+    return all(_are_same(getattr(one, name), getattr(other, name)) for name in _CARRIED)
+
+
+def _are_same(one: Any, other: Any) -> bool:
+    if is_dataclass(one):
+        return type(one) is type(other) and _are_same(vars(one), vars(other))
+    if isinstance(one, np.ndarray):
+        if not isinstance(other, np.ndarray) or one.dtype != other.dtype:
+            return False
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+    if isinstance(one, dict):
+        return isinstance(other, dict) and one.keys() == other.keys() and all(_are_same(one[k], other[k]) for k in one)
+    if isinstance(one, (list, tuple)):
+        return type(one) is type(other) and len(one) == len(other) and all(map(_are_same, one, other))
+    return bool(one == other)
 
 
 class LayerOrder(NamedTuple):

@@ -32,16 +32,25 @@ class Dabs(NamedTuple):
         The one each lies in.
     strengths : (k,) float64
         0..1.
+    sizes : (k,) float64
+        Above 0, to 1: the part of the brush's radius that each reaches.
     """
 
     positions: FloatArray
     tangents: FloatArray
     polygons: Indices
     strengths: FloatArray
+    sizes: FloatArray
 
     def among(self, chosen: npt.NDArray[np.bool_]) -> Dabs:
         """Some of the dabs."""
-        return Dabs(self.positions[chosen], self.tangents[chosen], self.polygons[chosen], self.strengths[chosen])
+        return Dabs(
+            self.positions[chosen],
+            self.tangents[chosen],
+            self.polygons[chosen],
+            self.strengths[chosen],
+            self.sizes[chosen],
+        )
 
 
 class Touches(NamedTuple):
@@ -51,7 +60,7 @@ class Touches(NamedTuple):
     ----------
     dabs, elements : (t,) int64
     distances : (t,) float64
-        Less than the brush's radius.
+        As parts of a dab's own radius, times the brush's: less than this.
     """
 
     dabs: Indices
@@ -81,17 +90,18 @@ class BrushSurface:
         self._grid: tuple[float, PointGrid] | None = None
 
     def touched(self, dabs: Dabs, radius: float) -> Touches:
-        """The elements within `radius` of each dab and on its side of the surface.
+        """The elements within `radius`, times its size, of each dab and on its side of the surface.
 
         So that a brush finer than the mesh touches something, the corners of the polygon it is in, or the polygon, count as no
         farther than half the radius. A pair may come twice, the nearer last.
         """
         if self._grid is None or self._grid[0] != radius:
             self._grid = (radius, PointGrid(self.positions, radius))
-        parts = [*self._grid[1].pairs(dabs.positions), self._of_touched_polygons(dabs, radius)]
+        parts = [(dab, element, away / dabs.sizes[dab]) for dab, element, away in self._grid[1].pairs(dabs.positions)]
+        parts.append(self._of_touched_polygons(dabs, radius))
         dab, element, distance = (np.concatenate([part[i] for part in parts]) for i in range(3))
         normals = self.polygon_normals[dabs.polygons]
-        near = np.einsum("ij,ij->i", normals[dab], self.normals[element]) > _SAME_SIDE
+        near = (np.einsum("ij,ij->i", normals[dab], self.normals[element]) > _SAME_SIDE) & (distance < radius)
         order = np.flatnonzero(near)[np.argsort(dab[near], kind="stable")]
         return Touches(dab[order], element[order], distance[order])
 
@@ -105,7 +115,7 @@ class BrushSurface:
             corner = np.repeat(self._starts[dabs.polygons], sizes) + within
             element = self.polygons.vertices[corner].astype(np.int64)
         away = np.linalg.norm(dabs.positions[dab] - self.positions[element], axis=1)
-        return dab, element, np.minimum(away, 0.5 * radius)
+        return dab, element, np.minimum(away / dabs.sizes[dab], 0.5 * radius)
 
     def towards(self, vectors: FloatArray, normals: FloatArray, elements: Indices) -> FloatArray:
         """(t, 3) tangents of a surface with `normals`, turned the shortest way into the elements' tangent planes."""

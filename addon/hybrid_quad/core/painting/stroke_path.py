@@ -21,12 +21,15 @@ class PenPlace(NamedTuple):
     polygon : int
     pressure : float
         0..1.
+    size : float
+        Above 0, to 1: the part of the brush's radius that it reaches here.
     """
 
     position: FloatArray
     normal: FloatArray
     polygon: int
     pressure: float = 1.0
+    size: float = 1.0
 
 
 class StrokePath:
@@ -38,6 +41,7 @@ class StrokePath:
     Parameters
     ----------
     spacing : float
+        Of dabs of full size; smaller ones lie closer.
     """
 
     def __init__(self, spacing: float) -> None:
@@ -51,7 +55,7 @@ class StrokePath:
         if self._piece:
             self._length += float(np.linalg.norm(place.position - self._piece[-1].position))
         self._piece.append(place)
-        if self._length < self._spacing:
+        if self._length < self._spacing * place.size:
             return dabs_of([])
         dab = self._dab()
         self._piece, self._length = [place], 0.0
@@ -85,4 +89,5 @@ def dabs_of(places: list[tuple[PenPlace, FloatArray]]) -> Dabs:
         unit_vectors(np.array([vector for _, vector in places], np.float64).reshape(-1, 3)),
         np.array([place.polygon for place, _ in places], np.int64),
         np.array([place.pressure for place, _ in places], np.float64),
+        np.array([place.size for place, _ in places], np.float64),
     )
