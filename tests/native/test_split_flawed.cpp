@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "hybrid_quad/improve/improve.h"
@@ -38,7 +37,11 @@ struct Arch {
     quads.quads = {{0, 1, 4, 5}, {0, 3, 2, 1}, {0, 5, 6, 3}, {6, 7, 2, 3}, {7, 4, 1, 2}};
     for (int c = 0; c < static_cast<int>(features.curves.size()); ++c) {
       const std::vector<int>& along = features.curves[c].vertices;
-      const auto vertex = [&](int v) { return static_cast<int>(std::find(quads.anchor.begin(), quads.anchor.end(), v) - quads.anchor.begin()); };
+      const auto vertex = [&](int v) {
+        int found = 0;
+        while (quads.kind[found] != VertexKind::kCorner || quads.anchor[found] != v) ++found;
+        return found;
+      };
       quads.feature_edges.push_back({vertex(along.front()), vertex(along.back()), c});
     }
   }
