@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hybrid_quad {
 
@@ -86,6 +87,7 @@ QuadMesh EditMesh::extract() const {
 }
 
 bool EditMesh::is_feature(int a, int b) const {
+  if (links_[b].size() < links_[a].size()) std::swap(a, b);
   for (const FeatureLink& link : links_[a])
     if (link.vertex == b) return true;
   return false;
@@ -99,10 +101,10 @@ int EditMesh::corner_of(int q, int v) const {
 
 int EditMesh::across(int q, int side) const {
   const int a = quads_[q][side], b = quads_[q][(side + 1) & 3];
-  for (const int other : incident_[a]) {
-    if (other == q) continue;
-    const int i = corner_of(other, a);
-    if (quads_[other][(i + 3) & 3] == b) return other;
+  const int with_fewer = incident_[b].size() < incident_[a].size() ? b : a;
+  for (const int other : incident_[with_fewer]) {
+    const int i = corner_of(other, b);
+    if (other != q && i >= 0 && quads_[other][(i + 1) & 3] == a) return other;
   }
   return -1;
 }

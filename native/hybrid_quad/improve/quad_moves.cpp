@@ -14,8 +14,11 @@ constexpr double kStraight = 140 * M_PI / 180;
 /// Quads of the sector that begins at the feature edge to `start`, counterclockwise; 0 where no quad is there.
 int sector_size(const EditMesh& mesh, int v, int start) {
   int q = -1;
-  for (const int other : mesh.quads_at(v))
-    if (mesh.quad(other)[(mesh.corner_of(other, v) + 1) & 3] == start) q = other;
+  // From the end with fewer quads: many features can meet in a vertex, and its sectors are asked for one by one.
+  for (const int other : mesh.quads_at(mesh.valence(start) < mesh.valence(v) ? start : v)) {
+    const int corner = mesh.corner_of(other, v);
+    if (corner >= 0 && mesh.quad(other)[(corner + 1) & 3] == start) q = other;
+  }
   int count = 0;
   for (int left = mesh.valence(v); q >= 0 && left > 0; --left) {
     ++count;
