@@ -108,6 +108,10 @@ def test_long_texts_of_panels_are_broken_into_lines():
 
 
 @pytest.mark.skipif(bool(bpy.app.binary_path), reason="Blender as a module")
+@pytest.mark.skipif(
+    bpy.app.version < (4, 5),
+    reason="the module of 4.2 crashes as it ends once a few classes were registered, whatever is taken away",
+)
 def test_a_script_that_ends_registered_ends_well():
     """Some Blenders crash as they end, where a class is left."""
     folder = str(Path(hybrid_quad.__file__).parents[1])

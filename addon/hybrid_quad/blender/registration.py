@@ -73,7 +73,7 @@ def register() -> None:
         getattr(bpy.types, owner).append(entry)
     command.register()
     if not bpy.app.binary_path:
-        # Blender as a module: some versions (4.2, 4.5) crash or hang as they end with a class registered.
+        # Blender as a module: 4.5 crashes as it ends with a class registered; 4.2 does so even after all is taken away.
         atexit.register(unregister)
 
 

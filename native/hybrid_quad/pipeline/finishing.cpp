@@ -58,7 +58,9 @@ std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
 
 int Finishing::split_flawed(QuadMesh& mesh, const RunContext& context) const {
   const int splits = split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, agreement(), context, &whole_);
-  if (splits > 0) order_feature_edges(mesh, plan_.mesh, plan_.features);
+  if (splits == 0) return 0;
+  order_feature_edges(mesh, plan_.mesh, plan_.features);
+  if (asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
   return splits;
 }
 
