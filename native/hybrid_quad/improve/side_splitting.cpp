@@ -50,24 +50,25 @@ int SideSplitter::across(int quad, int side) const {
   return -1;
 }
 
+const QuadMesh::FeatureEdge* SideSplitter::feature_edge(int a, int b) const {
+  for (const QuadMesh::FeatureEdge& e : mesh_.feature_edges)
+    if ((e.a == a && e.b == b) || (e.a == b && e.b == a)) return &e;
+  return nullptr;
+}
+
 QuadMesh SideSplitter::split(const SideSplit& split, const std::array<Vector3, 4>& path, std::vector<int>* changed) const {
   const std::array<int, 4>& v = mesh_.quads[split.quad];
   const int a = v[split.side], b = v[(split.side + 1) & 3], c = v[(split.side + 2) & 3], d = v[(split.side + 3) & 3];
+  const QuadMesh::FeatureEdge* edge = feature_edge(a, b);
   QuadMesh out = mesh_;
-  const auto edge = std::find_if(out.feature_edges.begin(), out.feature_edges.end(), [&](const QuadMesh::FeatureEdge& e) {
-    return (e.a == a && e.b == b) || (e.a == b && e.b == a);
-  });
-  const bool is_feature = edge != out.feature_edges.end();
-  const VertexKind kind = is_feature ? VertexKind::kCurve : VertexKind::kFree;
-  const int curve = is_feature ? edge->curve : -1;
-  const int m1 = is_feature ? add_vertex(out, path[1], kind, curve) : add_inside(out, split.quad, path[1]);
-  const int m2 = is_feature ? add_vertex(out, path[2], kind, curve) : add_inside(out, split.quad, path[2]);
-  if (is_feature) {
+  const auto add = [&](const Vector3& p) { return edge ? add_vertex(out, p, VertexKind::kCurve, edge->curve) : add_inside(out, split.quad, p); };
+  const int m1 = add(path[1]), m2 = add(path[2]);
+  if (edge) {
     const bool is_forward = edge->a == a;
-    const int near = is_forward ? m1 : m2, far = is_forward ? m2 : m1, end = edge->b;
-    edge->b = near;
-    out.feature_edges.push_back({near, far, curve});
-    out.feature_edges.push_back({far, end, curve});
+    const int near = is_forward ? m1 : m2, far = is_forward ? m2 : m1;
+    out.feature_edges[edge - mesh_.feature_edges.data()].b = near;
+    out.feature_edges.push_back({near, far, edge->curve});
+    out.feature_edges.push_back({far, edge->b, edge->curve});
   }
   const int other = across(split.quad, split.side);
   fill(out, split.quad, {a, m1, m2, b, c, d}, split.fill, changed);

@@ -24,7 +24,7 @@ struct SideSplit {
 /// Whether both new vertices of the side have as many quads as a vertex there needs.
 bool is_sound(const SideSplit& split, bool on_boundary);
 
-/// Splits sides of quads, with feature edges along curves; the rest of the mesh stays as it is.
+/// Splits sides of quads, with feature edges along curves; the rest of the mesh stays as it is, and so does its topology.
 class SideSplitter {
  public:
   /// \param region  #Q: the part of the surface (FeatureGraph::face_region) on which a quad's new vertices inside are put, -1: any
@@ -32,6 +32,8 @@ class SideSplitter {
 
   /// The quad beyond a side, -1 on the boundary.
   int across(int quad, int side) const;
+  /// The feature edge between two vertices, in either direction; null where there is none.
+  const QuadMesh::FeatureEdge* feature_edge(int a, int b) const;
   /// The mesh with that side split.
   /// \param path  four points along the side, its ends included: the new vertices are the two between
   /// \param changed  the quads that are new or other than before

@@ -9,6 +9,7 @@
 #include "hybrid_quad/improve/side_splitting.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/mesh/quad_complex.h"
 
 namespace hybrid_quad {
 
@@ -51,6 +52,10 @@ class FlawedSplitter {
     int flawed = 0, quads = 0;
   };
 
+  bool is_valid(const QuadMesh& mesh) const {
+    return violations_of(mesh).empty() && euler_characteristic(mesh) == euler_characteristic(quads_);
+  }
+
   std::vector<int> flawed_of(const QuadMesh& mesh) const { return flawed_quads(mesh, whole_, agreement_, context_.threads); }
 
   /// Splits a side of a flawed quad, if none has more that are flawed for it; `flawed` then are these.
@@ -78,7 +83,7 @@ class FlawedSplitter {
       QuadMesh mesh = splitter.split(candidates[i].split, candidates[i].path, &changed);
       if (candidates[i].flawed > 0) mend(mesh);
       std::vector<int> left = flawed_of(mesh);
-      if (left.size() > most || !violations_of(mesh).empty()) continue;
+      if (left.size() > most || !is_valid(mesh)) continue;
       quads_ = std::move(mesh);
       flawed = std::move(left);
       return true;
@@ -89,7 +94,7 @@ class FlawedSplitter {
   std::vector<Candidate> candidates_at(int q, const SideSplitter& splitter, const Workpiece& piece) const {
     std::vector<Candidate> out;
     for (int side = 0; side < 4; ++side) {
-      if (!may_split(quads_.quads[q][side], quads_.quads[q][(side + 1) & 3])) continue;
+      if (!may_split(splitter, quads_.quads[q][side], quads_.quads[q][(side + 1) & 3])) continue;
       const int other = splitter.across(q, side);
       for (const auto& [first, second] : kPlaces)
         for (const HexagonFill fill : kFills)
@@ -103,7 +108,7 @@ class FlawedSplitter {
   }
 
   Candidate measured(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) const {
-    Candidate candidate{split, path_of(split, piece)};
+    Candidate candidate{split, path_of(split, splitter, piece)};
     const auto& path = candidate.path;
     const double straight = (path[3] - path[0]).norm();
     candidate.detour = straight > 0 ? ((path[1] - path[0]).norm() + (path[2] - path[1]).norm() + (path[3] - path[2]).norm()) / straight : 0;
@@ -118,23 +123,17 @@ class FlawedSplitter {
     return candidate;
   }
 
-  const QuadMesh::FeatureEdge* feature_edge(int a, int b) const {
-    for (const QuadMesh::FeatureEdge& e : quads_.feature_edges)
-      if ((e.a == a && e.b == b) || (e.a == b && e.b == a)) return &e;
-    return nullptr;
-  }
-
   /// Not a side of a curve whose number of edges somebody asked for.
-  bool may_split(int a, int b) const {
-    const QuadMesh::FeatureEdge* edge = feature_edge(a, b);
+  bool may_split(const SideSplitter& splitter, int a, int b) const {
+    const QuadMesh::FeatureEdge* edge = splitter.feature_edge(a, b);
     if (edge == nullptr) return true;
     return edge->curve >= 0 && edge->curve < static_cast<int>(features_.curves.size()) && features_.curves[edge->curve].asked_count == 0;
   }
 
-  std::array<Vector3, 4> path_of(const SideSplit& split, const Workpiece& piece) const {
+  std::array<Vector3, 4> path_of(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) const {
     const int a = quads_.quads[split.quad][split.side], b = quads_.quads[split.quad][(split.side + 1) & 3];
     const Vector3 &from = quads_.positions[a], &to = quads_.positions[b];
-    const QuadMesh::FeatureEdge* edge = feature_edge(a, b);
+    const QuadMesh::FeatureEdge* edge = splitter.feature_edge(a, b);
     if (edge == nullptr) return {from, from + split.first * (to - from), from + split.second * (to - from), to};
     const CurveGeometry& curve = piece.curves[edge->curve];
     const auto arc_of = [&](int v, double end) { return quads_.kind[v] == VertexKind::kCurve ? piece.arc[v] : end; };
