@@ -34,6 +34,7 @@ TEST(CombinatorialFill, NeverFails) {
       complex.curve.assign(quads.opposite.size(), -1);
       complex.kind.assign(quads.positions.size(), VertexKind::kFree);
       complex.anchor.assign(quads.positions.size(), 0);
+      complex.near_face.assign(quads.positions.size(), -1);
       EXPECT_TRUE(violations_of(to_quad_mesh(complex)).empty()) << joined(violations_of(to_quad_mesh(complex)));
       const auto found = violations_of(quads, patch);
       EXPECT_TRUE(found.empty()) << "seed " << seed << " family " << seed % kSurfaceFamilies << " factor "

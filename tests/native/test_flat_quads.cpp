@@ -13,6 +13,7 @@ QuadMesh nine_quads() {
       mesh.positions.emplace_back(i, j, 0);
       mesh.kind.push_back(VertexKind::kFree);
       mesh.anchor.push_back(0);
+      mesh.near_face.push_back(-1);
     }
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) mesh.quads.push_back({4 * j + i, 4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 4});
@@ -58,6 +59,17 @@ TEST(FlatQuads, SmallOnesCountAsPartOfSomethingLarge) {
   EXPECT_EQ(open_flat_quads(mesh, 1e-6), 0);
   EXPECT_GT(open_flat_quads(mesh, 1), 0);
   for (int q = 0; q < 9; ++q) EXPECT_GT(std::abs(upward_area(mesh, q)), 1e-10);
+}
+
+TEST(FlatQuads, StepsAreShortBesideSmallQuads) {
+  constexpr double kSize = 1e-4;
+  QuadMesh mesh = nine_quads();
+  mesh.positions[mesh.quads[4][0]] = {1, 2, 0};  // the middle one is a line now
+  mesh.positions[mesh.quads[4][1]] = {2, 2, 0};
+  for (Vector3& p : mesh.positions) p *= kSize;
+  ASSERT_EQ(upward_area(mesh, 4), 0);
+  EXPECT_EQ(open_flat_quads(mesh, 1), 1);
+  for (int q = 0; q < 9; ++q) EXPECT_GT(upward_area(mesh, q), 1e-10) << q;
 }
 
 TEST(FlatQuads, GoodOnesStay) {

@@ -195,6 +195,7 @@ QuadMesh rows_along(const std::vector<Vector3>& points, const std::vector<Vector
       quads.positions.push_back(points[i] + row * side[i]);
       quads.kind.push_back(row != 0 ? VertexKind::kFree : closed || (i > 0 && i + 1 < n) ? VertexKind::kCurve : VertexKind::kCorner);
       quads.anchor.push_back(0);
+      quads.near_face.push_back(-1);
     }
   for (int i = 0; i + (closed ? 0 : 1) < n; ++i) {
     const int a = 3 * i, b = 3 * ((i + 1) % n);

@@ -102,6 +102,7 @@ void bind(QuadMesh& quads, const Surface& surface) {
   const SegmentIndex index(std::move(segments));
   quads.kind.assign(n, VertexKind::kFree);
   quads.anchor.assign(n, 0);
+  quads.near_face.assign(n, -1);
   std::vector<double> place(n, 0);
   for (int v = 0; v < n; ++v) {
     const SegmentPoint point = index.nearest(quads.positions[v]);

@@ -18,6 +18,7 @@ struct Sheet {
         quads.positions.emplace_back(i / 10.0, j / 10.0, 0);
         quads.kind.push_back(VertexKind::kFree);
         quads.anchor.push_back(features.face_region[0]);
+        quads.near_face.push_back(-1);
       }
     for (int j = 0; j < kSide; ++j)
       for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
@@ -40,7 +41,7 @@ TEST(Mend, TurnsFoldedQuadsOver) {
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
   Smoother smoother(piece, SmootherOptions{});
-  EXPECT_GT(mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{}).mended, 0);
+  EXPECT_GT(mend_flawed(piece, smoother, sheet.index, {1.0}, RunContext{}).mended, 0);
   const QuadMesh after = piece.mesh.extract();
   EXPECT_TRUE(violations_of(after).empty());
   EXPECT_LT(flawed_quads(after, sheet.index, {1.0}).size(), before.size());
@@ -50,10 +51,33 @@ TEST(Mend, LeavesGoodMeshesAlone) {
   Sheet sheet;
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
   Smoother smoother(piece, SmootherOptions{});
-  const MendReport report = mend_flawed(piece, smoother, sheet.index, 1.0, RunContext{});
+  const MendReport report = mend_flawed(piece, smoother, sheet.index, {1.0}, RunContext{});
   EXPECT_EQ(report.mended, 0);
   EXPECT_EQ(report.placed, 0);
   EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
+}
+
+TEST(Workpiece, AVertexStaysOnTheSheetItIsNear) {
+  constexpr double kGap = 0.001;
+  const TriangleMesh below = test::flat_grid(9, 9);
+  std::vector<Vector3> positions(below.positions());
+  std::vector<std::array<int, 3>> faces(below.faces());
+  const int vertices = below.vertex_count(), count = below.face_count();
+  for (int v = 0; v < vertices; ++v) positions.push_back(below.position(v) + Vector3(0, 0, kGap));
+  for (int f = 0; f < count; ++f) faces.push_back({faces[f][0] + vertices, faces[f][1] + vertices, faces[f][2] + vertices});
+  const TriangleMesh sheets(std::move(positions), std::move(faces));
+  const FeatureGraph features = detect_features(sheets, FeatureOptions{}, RunContext{});
+  const SurfaceIndex index(sheets, features.face_region);
+  Sheet sheet;
+  for (Vector3& p : sheet.quads.positions) p.z() = 0.8 * kGap;
+  std::fill(sheet.quads.anchor.begin(), sheet.quads.anchor.end(), -1);
+  for (const int near : {-1, 0}) {
+    std::fill(sheet.quads.near_face.begin(), sheet.quads.near_face.end(), near);
+    Workpiece piece(sheet.quads, sheets, features, index);
+    piece.bind_all();
+    for (const Vector3& p : piece.mesh.positions) EXPECT_NEAR(p.z(), near < 0 ? kGap : 0, 1e-12);
+    for (const int f : piece.face) EXPECT_EQ(f < count, near == 0);
+  }
 }
 
 /// What is left of a fold where the smoother has no way downhill: vertices of a row that passed each other.
@@ -65,7 +89,7 @@ TEST(PlaceSearch, FindsPlacesWhereVerticesPassedEachOther) {
   for (int v = 0; v < piece.mesh.vertex_count(); ++v) piece.bind_free(v, Vector3::Zero());
   Smoother smoother(piece, SmootherOptions{});
   smoother.update_frames(true);
-  const FlawMeasure measure(piece, sheet.index, 1.0);
+  const FlawMeasure measure(piece, sheet.index, {1.0});
   const std::vector<int> flawed = flawed_quads(sheet.quads, sheet.index, {1.0});
   ASSERT_FALSE(flawed.empty());
   for (const int q : flawed) search_places(piece, smoother, measure, q);
@@ -85,7 +109,7 @@ TEST(PlaceSearch, LeavesWhatItCannotBetter) {
   piece.bind_all();
   Smoother smoother(piece, SmootherOptions{});
   smoother.update_frames(true);
-  const FlawMeasure measure(piece, sheet.index, 1.0);
+  const FlawMeasure measure(piece, sheet.index, {1.0});
   const QuadMesh before = piece.mesh.extract();
   for (int q = 0; q < piece.mesh.quad_count(); ++q) EXPECT_FALSE(search_places(piece, smoother, measure, q));
   EXPECT_EQ(piece.mesh.extract().positions, before.positions);
@@ -95,11 +119,13 @@ TEST(PlaceSearch, LeavesCornersWhereTheyAre) {
   Sheet sheet;
   sheet.quads.kind.clear();
   sheet.quads.anchor.clear();
+  sheet.quads.near_face.clear();
   for (std::size_t v = 0; v < sheet.quads.positions.size(); ++v) {
     const Vector3& p = sheet.quads.positions[v];
     const bool on_border = p.x() < 1e-9 || p.x() > 1 - 1e-9 || p.y() < 1e-9 || p.y() > 1 - 1e-9;
     sheet.quads.kind.push_back(on_border ? VertexKind::kCorner : VertexKind::kFree);
     sheet.quads.anchor.push_back(on_border ? -1 : sheet.features.face_region[0]);
+    sheet.quads.near_face.push_back(-1);
   }
   sheet.quads.positions[Sheet::id(5, 1)] = {0.5, -0.05, 0};
   Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
@@ -107,7 +133,7 @@ TEST(PlaceSearch, LeavesCornersWhereTheyAre) {
     if (piece.mesh.is_free(v)) piece.bind_free(v, Vector3::Zero());
   Smoother smoother(piece, SmootherOptions{});
   smoother.update_frames(true);
-  const FlawMeasure measure(piece, sheet.index, 1.0);
+  const FlawMeasure measure(piece, sheet.index, {1.0});
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (measure.is_flawed(q) || measure.lacks_shape(q) > 0) search_places(piece, smoother, measure, q);
   const QuadMesh after = piece.mesh.extract();

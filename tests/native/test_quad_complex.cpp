@@ -49,11 +49,13 @@ TEST(QuadComplex, EveryBrokenPromiseIsSeen) {
   EXPECT_TRUE(broken([](QuadComplex& c) { c.curve[0] = 4; }));
   EXPECT_TRUE(broken([](QuadComplex& c) { c.curve.pop_back(); }));
   EXPECT_TRUE(broken([](QuadComplex& c) { c.anchor.pop_back(); }));
+  EXPECT_TRUE(broken([](QuadComplex& c) { c.near_face.pop_back(); }));
   EXPECT_TRUE(broken([](QuadComplex& c) { c.positions[0].x() = std::numeric_limits<double>::quiet_NaN(); }));
   EXPECT_TRUE(broken([](QuadComplex& c) {  // a vertex that nothing uses
     c.positions.push_back(Vector3(9, 9, 9));
     c.kind.push_back(VertexKind::kFree);
     c.anchor.push_back(0);
+    c.near_face.push_back(-1);
   }));
   EXPECT_TRUE(broken([](QuadComplex& c) {  // two fans under one number
     for (int& v : c.vertex)

@@ -23,7 +23,7 @@ struct Covered {
     quads = to_quad_mesh(complex_of_quads(complex.positions, to_quad_mesh(complex).quads));
     std::fill(quads.anchor.begin(), quads.anchor.end(), features.face_region[0]);
     lengths.assign(input.vertex_count(), std::sqrt(input.total_area() / static_cast<double>(quads.quads.size())));
-    options.enough_area = kEnoughArea;
+    options.agreement.area = kEnoughArea;
   }
   static FeatureOptions no_angle() {
     FeatureOptions o;

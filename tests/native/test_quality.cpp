@@ -17,6 +17,7 @@ QuadMesh square_grid(int n, double z) {
       mesh.positions.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n, z);
       mesh.kind.push_back(VertexKind::kFree);
       mesh.anchor.push_back(0);
+      mesh.near_face.push_back(-1);
     }
   const auto id = [n](int i, int j) { return j * (n + 1) + i; };
   for (int j = 0; j < n; ++j)
@@ -147,6 +148,7 @@ TEST(SurfaceDistance, TwoQuadsMayShareADiagonal) {
   mesh.quads = {{0, 1, 2, 3}, {0, 3, 2, 4}, {0, 4, 2, 5}, {0, 5, 2, 1}};
   mesh.kind.assign(6, VertexKind::kFree);
   mesh.anchor.assign(6, 0);
+  mesh.near_face.assign(6, -1);
   const TriangleMesh sheet = test::flat_grid(2, 2);
   const SurfaceIndex index(sheet, {});
   EXPECT_NO_THROW(surface_distance(mesh, index, RunContext{}, 1000));

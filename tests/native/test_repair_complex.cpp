@@ -123,6 +123,7 @@ TEST(RepairComplex, WhateverMorseSmaleComplexesLeave) {
     for (std::size_t v = 0; v < quads.node.size(); ++v) {
       c.kind.push_back(quads.node[v] >= 0 ? VertexKind::kCorner : VertexKind::kFree);
       c.anchor.push_back(quads.node[v] >= 0 ? quads.node[v] : 0);
+      c.near_face.push_back(-1);
     }
     // Some inner sides are features too.
     mark_features(c, 1000, [&](int d) { return c.opposite[d] > d && d % 7 == seed % 7 && seed % 3 == 0; });

@@ -33,6 +33,7 @@ struct Arch {
       quads.positions.push_back(input.position(v));
       quads.kind.push_back(is_free ? VertexKind::kFree : VertexKind::kCorner);
       quads.anchor.push_back(is_free ? features.face_region[0] : v);
+      quads.near_face.push_back(-1);
     }
     quads.quads = {{0, 1, 4, 5}, {0, 3, 2, 1}, {0, 5, 6, 3}, {6, 7, 2, 3}, {7, 4, 1, 2}};
     for (int c = 0; c < static_cast<int>(features.curves.size()); ++c) {

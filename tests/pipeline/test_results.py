@@ -57,6 +57,15 @@ def test_the_count_is_near_the_asked_one(name):
     assert abs(len(result.quads) / 1500 - 1) <= 0.1
 
 
+def test_sheets_in_one_place_keep_the_shape_of_their_quads():
+    """So small that no judge tells which sheet a quad agrees with: none is changed for that alone."""
+    vertices, faces = SURFACES["torus"]
+    result = hybrid_quad.remesh(vertices * (1.0, 1.0, 0.0), faces, quads=9000)
+    shapes = scaled_jacobian(result.vertices, result.quads)
+    assert result.report["repairs"]["mended_places"] < 0.05 * len(result.quads)
+    assert shapes.mean() > 0.9
+
+
 def test_edge_length():
     vertices, faces = surfaces.grid(20, 20, 4.0, 4.0)
     result = hybrid_quad.remesh(vertices, faces, edge_length=0.25)

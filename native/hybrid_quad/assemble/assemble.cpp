@@ -25,6 +25,7 @@ class Assembler {
     int overlay_vertex;  ///< -1 inside a patch
     Vector3 position;
     int region;
+    int near_face;  ///< of the input
   };
 
   void add_dart(int first_halfedge, int opposite, Origin origin) {
@@ -38,20 +39,35 @@ class Assembler {
     for (const auto& sides : regular_.side)
       for (const int k : sides) {
         const int v = overlay_.origin[k];
-        const int region = surface_.features.face_region[overlay_.piece_face[overlay_.piece_of[k]]];
-        add_dart(k, -1, {v, overlay_.vertices[v].position, region});
+        const int face = overlay_.piece_face[overlay_.piece_of[k]];
+        add_dart(k, -1, {v, overlay_.vertices[v].position, surface_.features.face_region[face], near_face_of(face)});
       }
   }
 
   void add_patch(const FilledPatch& patch) {
     const int base = static_cast<int>(out_.opposite.size());
     const PatchQuads& q = patch.quads;
+    const int near_face = near_face_of_border(q);
     for (std::size_t d = 0; d < q.opposite.size(); ++d) {
       const int local = q.quads[d / 4][d % 4];
       const int node = q.node[local];
       add_dart(q.arc[d], q.opposite[d] < 0 ? -1 : base + q.opposite[d],
-               {node, node >= 0 ? overlay_.vertices[node].position : q.positions[local], patch.region});
+               {node, node >= 0 ? overlay_.vertices[node].position : q.positions[local], patch.region, near_face});
     }
+  }
+
+  /// An input face about a face of the working surface; of a corner off the curves, where there is one.
+  int near_face_of(int face) const {
+    const std::array<int, 3>& corners = surface_.mesh.face(face);
+    for (const int v : corners)
+      if (!surface_.features.on_feature[v]) return surface_.near_face[v];
+    return surface_.near_face[corners[0]];
+  }
+
+  int near_face_of_border(const PatchQuads& quads) const {
+    for (const int k : quads.arc)
+      if (k >= 0) return near_face_of(overlay_.piece_face[overlay_.piece_of[k]]);
+    return -1;
   }
 
   bool is_border(int k) const {
@@ -111,6 +127,7 @@ class Assembler {
         if (out_.curve[side] >= 0) curve = out_.curve[side];
     }
     const Origin& origin = origin_[orbit.front()];
+    out_.near_face.push_back(origin.near_face);
     const int surface_vertex = overlay_vertex < 0 ? -1 : overlay_.vertices[overlay_vertex].surface_vertex;
     out_.positions.push_back(overlay_vertex < 0 ? origin.position : overlay_.vertices[overlay_vertex].position);
     if (surface_vertex >= 0 && surface_.features.is_corner[surface_vertex]) {

@@ -200,6 +200,7 @@ bool RingInsertion::divide(int v) {
         out_.positions.push_back(mesh_.positions[v]);
         out_.kind.push_back(VertexKind::kFree);
         out_.anchor.push_back(-1);
+        out_.near_face.push_back(mesh_.near_face[v]);
       }
       copies.around.push_back(vertex);
     }

@@ -70,7 +70,7 @@ void EditMesh::find_ideals(const TriangleMesh& input, const FeatureGraph& featur
   }
 }
 
-QuadMesh EditMesh::extract() const {
+QuadMesh EditMesh::extract(const std::vector<int>& near_face) const {
   QuadMesh mesh;
   std::vector<int> fresh(positions.size(), -1);
   for (int v = 0; v < vertex_count(); ++v) {
@@ -79,6 +79,7 @@ QuadMesh EditMesh::extract() const {
     mesh.positions.push_back(positions[v]);
     mesh.kind.push_back(kind_[v]);
     mesh.anchor.push_back(anchor_[v]);
+    mesh.near_face.push_back(near_face.empty() ? -1 : near_face[v]);
   }
   for (int q = 0; q < quad_count(); ++q)
     if (alive_[q]) mesh.quads.push_back({fresh[quads_[q][0]], fresh[quads_[q][1]], fresh[quads_[q][2]], fresh[quads_[q][3]]});

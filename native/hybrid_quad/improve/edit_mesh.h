@@ -27,7 +27,8 @@ class EditMesh {
   EditMesh(const QuadMesh& mesh, const TriangleMesh& input, const FeatureGraph& features);
 
   /// The mesh as it stands, without dead quads and unused vertices.
-  QuadMesh extract() const;
+  /// \param near_face  #V or empty (not known)
+  QuadMesh extract(const std::vector<int>& near_face = {}) const;
 
   std::vector<Vector3> positions;
 

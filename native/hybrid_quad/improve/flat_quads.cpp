@@ -8,7 +8,8 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kLeastArea = 1e-10;  // over the squared mean edge length
-constexpr double kStep = 1e-4;        // over the mean edge length
+constexpr double kNewArea = 1e-9;     // the same
+constexpr double kStep = 4.5e-5;      // over the mean edge length: squares about such diagonals have that area
 
 class FlatQuadOpener {
  public:
@@ -56,17 +57,22 @@ class FlatQuadOpener {
 
   void open(int q) {
     const Vector3 n = normal_around(q);
-    const double step = kStep * edge_;
+    const double longest = kStep * edge_;
+    // Around small quads such a step is long, and would turn others over.
+    const auto step_beside = [&](const Vector3& d) {
+      const double length = d.norm(), area = kNewArea * edge_ * edge_;
+      return length * longest > 2 * area ? 2 * area / length : longest;
+    };
     Vector3 d0 = diagonal(q, 0);
     const Vector3 d1 = diagonal(q, 1);
-    const auto across = [&](const Vector3& d) { return Vector3(d - n * n.dot(d)).norm() > step; };
+    const auto across = [&](const Vector3& d) { return Vector3(d - n * n.dot(d)).norm() > longest; };
     if (!across(d0)) {
       const Vector3 along = across(d1) ? Vector3(d1.cross(n)) : n.unitOrthogonal();
-      lengthen(q, 0, step * along.normalized());
+      lengthen(q, 0, (across(d1) ? step_beside(d1) : longest) * along.normalized());
       if (across(d1)) return;
-      d0 = along;
+      d0 = longest * along.normalized();
     }
-    lengthen(q, 1, step * n.cross(d0).normalized());
+    lengthen(q, 1, step_beside(d0) * n.cross(d0).normalized());
   }
 
   QuadMesh& mesh_;

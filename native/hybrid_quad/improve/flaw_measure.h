@@ -13,9 +13,9 @@ namespace hybrid_quad {
 /// How flawed (quality.h) some quads are together, as a Trial::Measure: what counts is the very property that a judge checks.
 class FlawMeasure {
  public:
-  /// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
-  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, double enough_area)
-      : piece_(piece), whole_(whole), enough_area_(enough_area) {}
+  /// \param whole, agreement  the surface to measure by, and the other parameter of flawed_quads
+  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, const Agreement& agreement)
+      : piece_(piece), whole_(whole), agreement_(agreement) {}
 
   bool is_flawed(int q) const {
     constexpr double kLeastArea = 1e-9;
@@ -26,7 +26,7 @@ class FlawMeasure {
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].is_flawed;
     const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    known[0] = {p, !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, {enough_area_})};
+    known[0] = {p, !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, agreement_)};
     return known[0].is_flawed;
   }
 
@@ -65,7 +65,7 @@ class FlawMeasure {
 
   const Workpiece& piece_;
   const SurfaceIndex& whole_;
-  double enough_area_;
+  Agreement agreement_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
 };
 

@@ -101,11 +101,11 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     if (report.inverted_after > kManyInverted && report.inverted_after > kWorthwhile * before) break;
   }
   if (options.rings == nullptr) {
-    const MendReport mended = mend_flawed(piece, smoother, whole, options.enough_area, context);
+    const MendReport mended = mend_flawed(piece, smoother, whole, options.agreement, context);
     report.mended = mended.mended;
     report.placed = mended.placed;
   }
-  quads = piece.mesh.extract();
+  quads = piece.mesh.extract(piece.face);
   return report;
 }
 
@@ -144,13 +144,13 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   if (quads.quads.empty() || input.face_count() == 0) return {};
   constexpr int kAttempts = 5;
   const SurfaceIndex& judged = whole ? *whole : index;
-  Restoration restoration(quads, judged, options.enough_area, context.threads);
+  Restoration restoration(quads, judged, options.agreement, context.threads);
   QuadMesh best;
   ImproveReport report;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     QuadMesh improved = quads;
     ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, judged, options, context);
-    const std::vector<int> flawed = flawed_quads(improved, judged, {options.enough_area}, context.threads);
+    const std::vector<int> flawed = flawed_quads(improved, judged, options.agreement, context.threads);
     now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();
@@ -184,7 +184,7 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
   bind(piece);
   Smoother smoother(piece, smoothing_of(options, context.threads));
   smoother.update_frames(true);
-  const FlawMeasure measure(piece, whole ? *whole : index, options.enough_area);
+  const FlawMeasure measure(piece, whole ? *whole : index, options.agreement);
   const int before = piece.mesh.live_quads();
   for (int now = before, last = -1; now != number.wanted && now != last;) {
     last = now;
@@ -195,8 +195,8 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
     now = piece.mesh.live_quads();
     smooth_without_flaws(piece, smoother, measure, kSweeps, context);
   }
-  mend_flawed(piece, smoother, measure.surface(), options.enough_area, context);
-  quads = piece.mesh.extract();
+  mend_flawed(piece, smoother, measure.surface(), options.agreement, context);
+  quads = piece.mesh.extract(piece.face);
   return static_cast<int>(quads.quads.size()) - before;
 }
 

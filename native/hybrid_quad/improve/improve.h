@@ -22,7 +22,7 @@ struct ImproveOptions {
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  double enough_area = 0;          ///< so much surface near a quad has to agree with it (flawed_quads)
+  Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads)
 };
 
 struct ImproveReport {
@@ -84,8 +84,8 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
                        const SurfaceIndex* whole = nullptr);
 
-/// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by a
-/// ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
+/// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
+/// a twenty thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).
 /// \param edge  mean edge length of all that the quads are part of
 /// \returns number of quads opened

@@ -16,8 +16,8 @@ namespace {
 
 class Mender {
  public:
-  Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area)
-      : piece_(piece), smoother_(smoother), measure_(piece, whole, enough_area), search_(piece.mesh, kEffort) {}
+  Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement)
+      : piece_(piece), smoother_(smoother), measure_(piece, whole, agreement), search_(piece.mesh, kEffort) {}
 
   bool is_flawed(int q) const { return measure_.is_flawed(q); }
 
@@ -106,17 +106,18 @@ class Mender {
 
 }  // namespace
 
-MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
-                       const RunContext& context, bool and_poor) {
+MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement,
+                       const RunContext& context, bool and_poor, const std::vector<int>* quads) {
   constexpr int kRounds = 3;
-  Mender mender(piece, smoother, whole, enough_area);
-  // Rounds over all quads, until one changes nothing.
+  Mender mender(piece, smoother, whole, agreement);
+  // Rounds over quads, until one changes nothing.
   const auto in_rounds = [&](const auto& change) {
     int changes = 0;
     for (int round = 0, last = -1; round < kRounds && changes != last; ++round) {
       last = changes;
-      for (int q = 0; q < piece.mesh.quad_count() && !mender.exhausted(); ++q) {
-        if ((q & 255) == 0) context.checkpoint();
+      for (int i = 0; i < (quads ? static_cast<int>(quads->size()) : piece.mesh.quad_count()) && !mender.exhausted(); ++i) {
+        if ((i & 255) == 0) context.checkpoint();
+        const int q = quads ? (*quads)[i] : i;
         if (piece.mesh.alive(q)) changes += change(q);
       }
     }

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -15,8 +18,9 @@ struct MendReport {
 /// The last resort for quads that are flawed (quality.h) when all else is done: other positions or other neighbours, whatever
 /// valences and shapes suffer, if only fewer quads around are flawed. Then, if `and_poor`, other positions around quads whose
 /// scaled Jacobian is below FlawMeasure::kFair.
-/// \param whole, enough_area  the surface to measure by, and the other parameter of flawed_quads
-MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, double enough_area,
-                       const RunContext& context, bool and_poor = true);
+/// \param whole, agreement  the surface to measure by, and the other parameter of flawed_quads
+/// \param quads  only these are mended; null: all
+MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement,
+                       const RunContext& context, bool and_poor = true, const std::vector<int>* quads = nullptr);
 
 }  // namespace hybrid_quad

@@ -16,9 +16,9 @@ double reach_of(const QuadMesh& mesh, int q, const Vector3& centre) {
 
 }  // namespace
 
-Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double enough_area, int threads)
+Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, const Agreement& agreement, int threads)
     : locked_(extracted.quads.size(), 0), flawed_(extracted.quads.size(), 0) {
-  for (const int q : flawed_quads(extracted, index, {enough_area}, threads)) {
+  for (const int q : flawed_quads(extracted, index, agreement, threads)) {
     flawed_[q] = 1;
     ++flawed_before_;
   }

@@ -4,6 +4,7 @@
 
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 
@@ -12,7 +13,7 @@ namespace hybrid_quad {
 /// leave no room to make it better.
 class Restoration {
  public:
-  Restoration(const QuadMesh& extracted, const SurfaceIndex& index, double enough_area, int threads = 1);
+  Restoration(const QuadMesh& extracted, const SurfaceIndex& index, const Agreement& agreement, int threads = 1);
 
   int flawed_before() const { return flawed_before_; }
   const std::vector<char>& locked() const { return locked_; }  ///< #Q of the extracted mesh

@@ -19,10 +19,11 @@ std::array<int, 2> quads_at_new_vertices(HexagonFill fill) {
   return {2, 2};
 }
 
-int add_vertex(QuadMesh& mesh, const Vector3& position, VertexKind kind, int anchor) {
+int add_vertex(QuadMesh& mesh, const Vector3& position, VertexKind kind, int anchor, int near_face) {
   mesh.positions.push_back(position);
   mesh.kind.push_back(kind);
   mesh.anchor.push_back(anchor);
+  mesh.near_face.push_back(near_face);
   return static_cast<int>(mesh.positions.size()) - 1;
 }
 
@@ -61,7 +62,9 @@ QuadMesh SideSplitter::split(const SideSplit& split, const std::array<Vector3, 4
   const int a = v[split.side], b = v[(split.side + 1) & 3], c = v[(split.side + 2) & 3], d = v[(split.side + 3) & 3];
   const QuadMesh::FeatureEdge* edge = feature_edge(a, b);
   QuadMesh out = mesh_;
-  const auto add = [&](const Vector3& p) { return edge ? add_vertex(out, p, VertexKind::kCurve, edge->curve) : add_inside(out, split.quad, p); };
+  const auto add = [&](const Vector3& p) {
+    return edge ? add_vertex(out, p, VertexKind::kCurve, edge->curve, -1) : add_inside(out, split.quad, p);
+  };
   const int m1 = add(path[1]), m2 = add(path[2]);
   if (edge) {
     const bool is_forward = edge->a == a;
@@ -115,7 +118,7 @@ int SideSplitter::add_inside(QuadMesh& out, int quad, const Vector3& position) c
   SurfaceIndex::Filter filter;
   filter.region = region_[quad];
   const SurfacePoint point = surface_.nearest(position, filter);
-  return add_vertex(out, point.face < 0 ? position : point.position, VertexKind::kFree, region_[quad]);
+  return add_vertex(out, point.face < 0 ? position : point.position, VertexKind::kFree, region_[quad], point.face);
 }
 
 }  // namespace hybrid_quad

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -19,18 +22,61 @@ constexpr std::array<HexagonFill, 5> kFills{HexagonFill::kFirstEdge, HexagonFill
                                             HexagonFill::kStarAtSecond, HexagonFill::kInset};
 constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2, 0.5}, {0.5, 0.8}}};
 
+std::array<Vector3, 4> corners_of(const QuadMesh& mesh, int q) {
+  const auto& v = mesh.quads[q];
+  return {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]};
+}
+
+/// flawed_quads, which remembers quads by their corners: from one trial to the next nearly all stay where they are.
+class FlawMemory {
+ public:
+  FlawMemory(const SurfaceIndex& whole, const Agreement& agreement, double edge)
+      : whole_(whole), agreement_(agreement), edge_(edge) {}
+
+  std::vector<int> flawed_of(const QuadMesh& mesh) {
+    std::vector<int> flawed;
+    for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
+      if (is_flawed(corners_of(mesh, q))) flawed.push_back(q);
+    return flawed;
+  }
+
+  bool is_flawed(const std::array<Vector3, 4>& corners) {
+    constexpr double kLeastArea = 1e-10;
+    const auto [known, is_new] = known_.try_emplace(corners, false);
+    if (is_new)
+      known->second = !(0.5 * (corners[2] - corners[0]).cross(corners[3] - corners[1]).norm() > kLeastArea * edge_ * edge_) ||
+                      is_inverted(corners, whole_, agreement_);
+    return known->second;
+  }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const std::array<Vector3, 4>& corners) const {
+      char bytes[sizeof(corners)];
+      std::memcpy(bytes, corners.data(), sizeof(corners));
+      return std::hash<std::string_view>()({bytes, sizeof(bytes)});
+    }
+  };
+
+  const SurfaceIndex& whole_;
+  Agreement agreement_;
+  double edge_;
+  std::unordered_map<std::array<Vector3, 4>, bool, Hash> known_;
+};
+
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                  const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
-      : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options), context_(context) {}
+      : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
+        context_(context), memory_(whole, agreement, mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
   int run() {
     constexpr int kMostSplits = 24, kMostInVain = 3;
     constexpr std::size_t kMostFlawed = 24;
     int splits = 0, kept = 0;
-    std::vector<int> flawed = flawed_of(quads_);
+    std::vector<int> flawed = memory_.flawed_of(quads_);
     QuadMesh best = quads_;
     for (std::size_t least = flawed.size(); least > 0 && least <= kMostFlawed && splits < kMostSplits && splits - kept <= kMostInVain;) {
       if (!split_any(flawed)) break;
@@ -56,24 +102,22 @@ class FlawedSplitter {
     return violations_of(mesh).empty() && euler_characteristic(mesh) == euler_characteristic(quads_);
   }
 
-  std::vector<int> flawed_of(const QuadMesh& mesh) const { return flawed_quads(mesh, whole_, agreement_, context_.threads); }
-
   /// Splits a side of a flawed quad, if none has more that are flawed for it; `flawed` then are these.
   bool split_any(std::vector<int>& flawed) {
     const std::vector<int> now = flawed;
+    Workpiece piece(quads_, input_, features_, index_);
+    piece.bind_all();
+    const SideSplitter splitter(quads_, index_, piece.region);
     for (const std::size_t most : {now.size() - 1, now.size()})
       for (const int q : now)
-        if (split_at(q, most, flawed)) return true;
+        if (split_at(q, most, splitter, piece, flawed)) return true;
     return false;
   }
 
   /// \param most  so many flawed quads may be left
-  bool split_at(int q, std::size_t most, std::vector<int>& flawed) {
+  bool split_at(int q, std::size_t most, const SideSplitter& splitter, const Workpiece& piece, std::vector<int>& flawed) {
     constexpr std::size_t kTrials = 8;
     context_.checkpoint();
-    Workpiece piece(quads_, input_, features_, index_);
-    piece.bind_all();
-    const SideSplitter splitter(quads_, index_, piece.region);
     std::vector<Candidate> candidates = candidates_at(q, splitter, piece);
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
       return std::make_tuple(x.flawed, -x.detour, x.quads) < std::make_tuple(y.flawed, -y.detour, y.quads);
@@ -81,8 +125,8 @@ class FlawedSplitter {
     for (std::size_t i = 0; i < std::min(kTrials, candidates.size()) && trials_left_ > 0; ++i, --trials_left_) {
       std::vector<int> changed;
       QuadMesh mesh = splitter.split(candidates[i].split, candidates[i].path, &changed);
-      if (candidates[i].flawed > 0) mend(mesh);
-      std::vector<int> left = flawed_of(mesh);
+      if (candidates[i].flawed > 0) mend(mesh, memory_.flawed_of(mesh));
+      std::vector<int> left = memory_.flawed_of(mesh);
       if (left.size() > most || !is_valid(mesh)) continue;
       quads_ = std::move(mesh);
       flawed = std::move(left);
@@ -116,8 +160,7 @@ class FlawedSplitter {
     const QuadMesh mesh = splitter.split(split, candidate.path, &changed);
     candidate.quads = static_cast<int>(changed.size());
     for (const int k : changed) {
-      const auto& v = mesh.quads[k];
-      const std::array<Vector3, 4> p{mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]};
+      const std::array<Vector3, 4> p = corners_of(mesh, k);
       candidate.flawed += !((p[2] - p[0]).cross(p[3] - p[1]).norm() > 0) || is_inverted(p, whole_, agreement_);
     }
     return candidate;
@@ -144,7 +187,7 @@ class FlawedSplitter {
     return {from, at(split.first), at(split.second), to};
   }
 
-  void mend(QuadMesh& mesh) const {
+  void mend(QuadMesh& mesh, const std::vector<int>& flawed) const {
     Workpiece piece(mesh, input_, features_, index_);
     if (options_.target_length > 0) piece.h = options_.target_length;
     if (!(piece.h > 0)) return;
@@ -153,8 +196,8 @@ class FlawedSplitter {
     smoothing.threads = context_.threads;
     Smoother smoother(piece, smoothing);
     smoother.update_frames(true);
-    mend_flawed(piece, smoother, whole_, agreement_.area, context_, false);
-    mesh = piece.mesh.extract();
+    mend_flawed(piece, smoother, whole_, agreement_, context_, false, &flawed);
+    mesh = piece.mesh.extract(piece.face);
   }
 
   QuadMesh& quads_;
@@ -165,6 +208,7 @@ class FlawedSplitter {
   const Agreement& agreement_;
   const ImproveOptions& options_;
   const RunContext& context_;
+  FlawMemory memory_;
   int trials_left_ = 100;  ///< each takes some milliseconds for a thousand quads
 };
 

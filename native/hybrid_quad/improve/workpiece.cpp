@@ -34,17 +34,12 @@ std::vector<CurveGeometry> geometry_of(const FeatureGraph& features, const Trian
 
 Workpiece::Workpiece(const QuadMesh& quads, const TriangleMesh& input_mesh, const FeatureGraph& feature_graph,
                      const SurfaceIndex& surface_index)
-    : input(input_mesh),
-      features(feature_graph),
-      index(surface_index),
-      mesh(quads, input_mesh, feature_graph),
-      h(mean_edge_length(mesh)),
-      curves(geometry_of(feature_graph, input_mesh)),
-      face(quads.positions.size(), -1),
-      arc(quads.positions.size(), 0.0),
-      previous(quads.positions.size(), -1),
-      next(quads.positions.size(), -1),
+    : input(input_mesh), features(feature_graph), index(surface_index), mesh(quads, input_mesh, feature_graph),
+      h(mean_edge_length(mesh)), curves(geometry_of(feature_graph, input_mesh)), face(quads.near_face),
+      arc(quads.positions.size(), 0.0), previous(quads.positions.size(), -1), next(quads.positions.size(), -1),
       region(quads.quads.size(), -1) {
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (!mesh.is_free(v)) face[v] = -1;
   for (const int r : features.face_region) region_count = std::max(region_count, r + 1);
 }
 
@@ -72,8 +67,17 @@ void Workpiece::bind_free(int v, const Vector3& normal) {
   filter.region = region_filter(mesh.anchor(v));
   filter.hint = face[v];
   const double length = normal.norm();
+  constexpr double kAgrees = 0.1, kWorthInEdges = 0.5, kNearInEdges = 0.1;
+  if (face[v] >= 0 && length > 0 && (filter.region < 0 || features.face_region[face[v]] == filter.region)) {
+    // A walk stays on the vertex's sheet, however near another one is.
+    const SurfacePoint walked = walk(mesh.positions[v], face[v]);
+    if (walked.squared_distance < std::pow(kNearInEdges * h, 2) && input.normal(walked.face).dot(normal) > kAgrees * length) {
+      face[v] = walked.face;
+      mesh.positions[v] = walked.position;
+      return;
+    }
+  }
   SurfacePoint point = index.nearest(mesh.positions[v], filter);
-  constexpr double kAgrees = 0.1, kWorthInEdges = 0.5;
   if (length > 0 && point.face >= 0 && input.normal(point.face).dot(normal) < kAgrees * length) {
     // Perhaps the far side of a thin part. But a quad that starts inverted has a wrong normal: believe it only where
     // that costs little distance.

@@ -107,6 +107,7 @@ void ComplexEditor::inset(int q, int anchor) {
     complex_.positions.push_back(p);
     complex_.kind.push_back(VertexKind::kFree);
     complex_.anchor.push_back(anchor);
+    complex_.near_face.push_back(complex_.near_face[outer[i]]);
     corners_.push_back(3);
     border_.push_back(0);
   }
@@ -176,6 +177,7 @@ void ComplexEditor::restar(int d, int anchor) {
   complex_.positions.push_back(middle);
   complex_.kind.push_back(VertexKind::kFree);
   complex_.anchor.push_back(anchor);
+  complex_.near_face.push_back(complex_.near_face[u]);
   corners_.push_back(3);
   border_.push_back(0);
   --corners_[v];
@@ -231,6 +233,7 @@ std::vector<int> ComplexEditor::compact() {
     c.positions[n] = Vector3(c.positions[v]);
     c.kind[n] = c.kind[v];
     c.anchor[n] = c.anchor[v];
+    c.near_face[n] = c.near_face[v];
     corners_[n] = corners_[v];
     border_[n] = border_[v];
   }
@@ -247,6 +250,7 @@ std::vector<int> ComplexEditor::compact() {
   c.positions.resize(vertices);
   c.kind.resize(vertices);
   c.anchor.resize(vertices);
+  c.near_face.resize(vertices);
   corners_.resize(vertices);
   border_.resize(vertices);
   alive_.assign(quads, 1);

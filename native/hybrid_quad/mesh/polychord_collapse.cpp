@@ -124,6 +124,7 @@ class PolychordCollapse {
       out.positions.push_back(result.positions[v]);
       out.kind.push_back(result.kind[v]);
       out.anchor.push_back(result.anchor[v]);
+      out.near_face.push_back(result.near_face[v]);
     }
     for (int d = 0; d < dart_count(); ++d) {
       if (new_quad[d / 4] < 0) continue;

@@ -56,14 +56,16 @@ class Splitter {
     result_.positions = old.positions;
     result_.kind = old.kind;
     result_.anchor = old.anchor;
+    result_.near_face = old.near_face;
   }
 
   QuadComplex run() {
     for (int d = 0; d < static_cast<int>(cut_.size()); ++d) {
       if (!cut_[d] || middle_[d] >= 0) continue;
       const Vector3 p = 0.5 * (old_.positions[old_.from(d)] + old_.positions[old_.to(d)]);
-      middle_[d] = old_.curve[d] >= 0 ? add(p, VertexKind::kCurve, old_.curve[d])
-                                      : add(p, VertexKind::kFree, region_[d / 4]);
+      const int near = old_.near_face[old_.from(d)];
+      middle_[d] =
+          old_.curve[d] >= 0 ? add(p, VertexKind::kCurve, old_.curve[d], near) : add(p, VertexKind::kFree, region_[d / 4], near);
       if (old_.opposite[d] >= 0) middle_[old_.opposite[d]] = middle_[d];
     }
     for (int q = 0; q < old_.quad_count(); ++q) fill(q);
@@ -97,10 +99,11 @@ class Splitter {
     }
   }
 
-  int add(const Vector3& p, VertexKind kind, int anchor) {
+  int add(const Vector3& p, VertexKind kind, int anchor, int near_face) {
     result_.positions.push_back(p);
     result_.kind.push_back(kind);
     result_.anchor.push_back(anchor);
+    result_.near_face.push_back(near_face);
     return static_cast<int>(result_.positions.size()) - 1;
   }
 
@@ -110,8 +113,8 @@ class Splitter {
     int center = -1;
     if (n == 2 && m == 2) {
       const auto& p = old_.positions;
-      center = add(0.25 * (p[corner[0]] + p[corner[1]] + p[corner[2]] + p[corner[3]]), VertexKind::kFree,
-                   region_[q]);
+      center = add(0.25 * (p[corner[0]] + p[corner[1]] + p[corner[2]] + p[corner[3]]), VertexKind::kFree, region_[q],
+                   old_.near_face[corner[0]]);
     }
     const auto at = [&](int i, int j) {
       if (i % n == 0 && j % m == 0) return corner[j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2)];

@@ -17,6 +17,7 @@ QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<s
   complex.curve.assign(darts, -1);
   complex.kind.assign(positions.size(), VertexKind::kFree);
   complex.anchor.assign(positions.size(), 0);
+  complex.near_face.assign(positions.size(), -1);
   complex.positions = std::move(positions);
 
   std::vector<std::array<int, 3>> sides;  // lower vertex, higher vertex, dart
@@ -44,6 +45,7 @@ QuadComplex complex_of(const QuadMesh& mesh) {
   QuadComplex complex = complex_of_quads(mesh.positions, mesh.quads);
   complex.kind = mesh.kind;
   complex.anchor = mesh.anchor;
+  complex.near_face = mesh.near_face;
   std::vector<std::pair<std::array<int, 2>, int>> curve_of;
   for (const QuadMesh::FeatureEdge& e : mesh.feature_edges) curve_of.push_back({{std::min(e.a, e.b), std::max(e.a, e.b)}, e.curve});
   std::sort(curve_of.begin(), curve_of.end());
@@ -93,7 +95,7 @@ bool sizes_agree(const QuadComplex& c, std::vector<std::string>& found) {
   const std::size_t darts = c.opposite.size(), vertices = c.positions.size();
   if (darts % 4 != 0 || c.vertex.size() != darts || c.curve.size() != darts)
     found.push_back("dart arrays differ in length");
-  if (c.kind.size() != vertices || c.anchor.size() != vertices)
+  if (c.kind.size() != vertices || c.anchor.size() != vertices || c.near_face.size() != vertices)
     found.push_back("vertex arrays differ in length");
   for (std::size_t d = 0; d < darts && found.empty(); ++d) {
     const int o = c.opposite[d], v = c.vertex[d];
@@ -155,6 +157,7 @@ QuadMesh to_quad_mesh(const QuadComplex& complex) {
   mesh.positions = complex.positions;
   mesh.kind = complex.kind;
   mesh.anchor = complex.anchor;
+  mesh.near_face = complex.near_face;
   mesh.quads.reserve(complex.quad_count());
   for (int q = 0; q < complex.quad_count(); ++q) {
     const int* v = &complex.vertex[4 * q];

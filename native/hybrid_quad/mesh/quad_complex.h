@@ -19,6 +19,7 @@ struct QuadComplex {
   std::vector<Vector3> positions;  ///< #V
   std::vector<VertexKind> kind;    ///< #V
   std::vector<int> anchor;         ///< #V, as in QuadMesh
+  std::vector<int> near_face;      ///< #V, as in QuadMesh
 
   int quad_count() const { return static_cast<int>(opposite.size()) / 4; }
   static int next(int d) { return (d & ~3) | ((d + 1) & 3); }

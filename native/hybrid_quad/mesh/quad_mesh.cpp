@@ -24,7 +24,8 @@ std::string edge_name(const Side& s) {
 
 bool readable(const QuadMesh& mesh, std::vector<std::string>& found) {
   const int count = static_cast<int>(mesh.positions.size());
-  if (mesh.kind.size() != mesh.positions.size() || mesh.anchor.size() != mesh.positions.size())
+  if (mesh.kind.size() != mesh.positions.size() || mesh.anchor.size() != mesh.positions.size() ||
+      mesh.near_face.size() != mesh.positions.size())
     found.push_back("vertex arrays differ in length");
   for (std::size_t q = 0; q < mesh.quads.size(); ++q) {
     std::array<int, 4> v = mesh.quads[q];

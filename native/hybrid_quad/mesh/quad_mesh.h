@@ -18,6 +18,7 @@ struct QuadMesh {
   std::vector<VertexKind> kind;  ///< #V
   std::vector<int>
       anchor;  ///< #V: kFree: region (FeatureGraph::face_region); kCurve: curve id; kCorner: input vertex id (-1: a mirror plane made it)
+  std::vector<int> near_face;  ///< #V: an input face about the vertex, on its sheet however near others are; -1 not known
   struct FeatureEdge {
     int a, b, curve;  ///< vertices in the direction of the curve
   };

@@ -87,6 +87,7 @@ class QuadOpener {
     c_.positions.push_back(p);
     c_.kind.push_back(VertexKind::kFree);
     c_.anchor.push_back(anchor_);
+    c_.near_face.push_back(-1);
     return static_cast<int>(c_.positions.size()) - 1;
   }
   void set_corners(int quad, const std::array<int, 4>& v) {

@@ -15,7 +15,40 @@ namespace {
 // that there is no doubt. A judge sees no more than some hundred thousand points of the surface.
 constexpr double kEnough = 2.5e-5, kNoDoubt = 6e-5;
 
+/// Whether over much of a surface even squares that lie in its faces do not agree with it: where another sheet is in the same
+/// place, no quad of that size can.
+bool squares_fail(const TriangleMesh& mesh, const SurfaceIndex& whole, double edge, const Agreement& agreement) {
+  constexpr int kSamples = 200;
+  constexpr double kMuch = 0.25, kShort = 0.92;  // of the length asked for: not all quads are as large
+  const double total = mesh.total_area();
+  double area = 0;
+  int taken = 0, failed = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    area += mesh.area(f);
+    const int samples = static_cast<int>(std::lround(kSamples * area / total)) - taken;
+    if (samples == 0) continue;
+    taken += samples;
+    const auto& t = mesh.face(f);
+    const Vector3 centre = (mesh.position(t[0]) + mesh.position(t[1]) + mesh.position(t[2])) / 3;
+    const Vector3 x = 0.5 * kShort * edge * mesh.normal(f).unitOrthogonal(), y = mesh.normal(f).cross(x);
+    if (is_inverted({centre - x - y, centre + x - y, centre + x + y, centre - x + y}, whole, agreement)) failed += samples;
+  }
+  return failed > kMuch * kSamples;
+}
+
+/// What quads have to agree with is no more than what squares of their size do. Else all of them would count as flawed, and would
+/// be changed for nothing.
+Agreement most_that_squares_pass(const TriangleMesh& mesh, const SurfaceIndex& whole, double edge) {
+  for (const double part : {kNoDoubt, kEnough}) {
+    const Agreement agreement{part * whole.mesh().total_area()};
+    if (!squares_fail(mesh, whole, edge, agreement)) return agreement;
+  }
+  return least_agreement(whole);
+}
+
 }  // namespace
+
+Agreement least_agreement(const SurfaceIndex& whole) { return {kEnough * whole.mesh().total_area(), true}; }
 
 Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options)
     : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)) {
@@ -23,7 +56,7 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   constexpr double kWeightOfSizes = 3;
   improve_.fit = options.fit;
   improve_.target_length = std::sqrt(plan.mesh.total_area() / plan.quads);
-  improve_.enough_area = kNoDoubt * whole.mesh().total_area();
+  improve_.agreement = most_that_squares_pass(plan.mesh, whole, improve_.target_length);
   improve_.guides = &guides_;
   if (wishes.most_stretch > 1) improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;
@@ -53,19 +86,20 @@ void Finishing::make_mirrorable(QuadMesh& mesh, const RunContext& context) const
 }
 
 std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
-  return flawed_quads(mesh, whole_, agreement(), threads);
+  return flawed_quads(mesh, whole_, least_agreement(whole_), threads);
 }
 
 int Finishing::split_flawed(QuadMesh& mesh, const RunContext& context) const {
-  const int splits = split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, agreement(), context, &whole_);
+  const int splits =
+      split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, least_agreement(whole_), context, &whole_);
   if (splits == 0) return 0;
   order_feature_edges(mesh, plan_.mesh, plan_.features);
   if (asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
   return splits;
 }
 
-Agreement Finishing::agreement() const { return {kEnough * whole_.mesh().total_area(), true}; }
-
-std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const { return flawed_quads(mesh, whole_, {improve_.enough_area}, threads); }
+std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const {
+  return flawed_quads(mesh, whole_, improve_.agreement, threads);
+}
 
 }  // namespace hybrid_quad

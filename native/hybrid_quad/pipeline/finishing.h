@@ -7,6 +7,9 @@
 
 namespace hybrid_quad {
 
+/// What of a surface has to agree with each quad of a result.
+Agreement least_agreement(const SurfaceIndex& whole);
+
 /// How the extracted quads of a component are improved and made fit for mirroring.
 class Finishing {
  public:
@@ -28,8 +31,6 @@ class Finishing {
   std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
 
  private:
-  Agreement agreement() const;
-
   const ComponentPlan& plan_;
   const SurfaceIndex& whole_;
   const RemeshOptions& asked_;

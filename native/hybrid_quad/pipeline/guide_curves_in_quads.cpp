@@ -33,7 +33,7 @@ class GuideSettler {
   std::vector<std::set<int>> guides_of_curves() const;
   bool is_flat(int h) const;
   void take_if_sound(QuadMesh moved);
-  int flaws(const QuadMesh& mesh) const { return static_cast<int>(flawed_quads(mesh, whole_, {improve_.enough_area}).size()); }
+  int flaws(const QuadMesh& mesh) const { return static_cast<int>(flawed_quads(mesh, whole_, improve_.agreement).size()); }
 
   GuidedQuads& guided_;
   const ComponentPlan& plan_;

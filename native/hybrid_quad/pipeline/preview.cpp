@@ -51,6 +51,7 @@ class Collector {
     for (const Vector3& p : quads.positions) out_.quads.positions.push_back(frame_.outward(p));
     out_.quads.kind.insert(out_.quads.kind.end(), quads.kind.begin(), quads.kind.end());
     out_.quads.anchor.insert(out_.quads.anchor.end(), quads.anchor.begin(), quads.anchor.end());
+    out_.quads.near_face.insert(out_.quads.near_face.end(), quads.positions.size(), -1);
     for (std::array<int, 4> quad : quads.quads) {
       for (int& v : quad) v += base;
       out_.quads.quads.push_back(quad);

@@ -10,6 +10,7 @@
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/finishing.h"
 #include "hybrid_quad/pipeline/guided_input.h"
 #include "hybrid_quad/pipeline/limit_fit.h"
 #include "hybrid_quad/pipeline/run_plan.h"
@@ -31,6 +32,7 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   const int base = static_cast<int>(result.mesh.positions.size());
   result.mesh.positions.insert(result.mesh.positions.end(), m.positions.begin(), m.positions.end());
   result.mesh.kind.insert(result.mesh.kind.end(), m.kind.begin(), m.kind.end());
+  result.mesh.near_face.resize(result.mesh.positions.size(), -1);
   for (std::size_t v = 0; v < m.anchor.size(); ++v)
     result.mesh.anchor.push_back(m.kind[v] == VertexKind::kCorner && m.anchor[v] >= 0 ? input_vertex[m.anchor[v]] : m.anchor[v]);
   for (auto q : m.quads) {
@@ -87,14 +89,18 @@ int lone_quads(const QuadMesh& mesh) {
 }
 
 /// Quads of a small component can have an area beside the component's other quads, and none beside all.
-void open_flat_quads_of(std::vector<ComponentResult>& parts) {
+void open_flat_quads_of(std::vector<ComponentResult>& parts, const SurfaceIndex& whole, int threads) {
   double length = 0, quads = 0;
   for (const ComponentResult& part : parts) {
     const double count = static_cast<double>(part.mesh.quads.size());
     length += count * mean_edge_length(part.mesh);
     quads += count;
   }
-  for (ComponentResult& part : parts) part.repairs.opened_flat_quads += open_flat_quads(part.mesh, length / quads);
+  for (ComponentResult& part : parts) {
+    const int opened = open_flat_quads(part.mesh, length / quads);
+    part.repairs.opened_flat_quads += opened;
+    if (opened > 0) part.flawed_quads = static_cast<int>(flawed_quads(part.mesh, whole, least_agreement(whole), threads).size());
+  }
 }
 
 std::vector<int> smallest_first(const std::vector<ComponentPlan>& plans) {
@@ -196,7 +202,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
     done += share;
   }
-  open_flat_quads_of(parts);
+  open_flat_quads_of(parts, whole, context.threads);
   GuidedEdges guided;
   for (std::size_t i = 0; i < components.size(); ++i) {
     counts.record(plans[i], on_curves_of(plans[i], parts[i]));

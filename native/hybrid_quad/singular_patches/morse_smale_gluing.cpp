@@ -112,6 +112,7 @@ int add_vertex(MorseSmaleComplex& result, const PatchSurface& patch, int v) {
   quads.positions.push_back(patch.mesh.position(v));
   quads.kind.push_back(on_border ? VertexKind::kCorner : VertexKind::kFree);
   quads.anchor.push_back(on_border ? patch.node[v] : -1);
+  quads.near_face.push_back(-1);
   return static_cast<int>(result.extremum.size()) - 1;
 }
 

@@ -17,6 +17,7 @@ QuadComplex as_complex(const PatchQuads& quads) {
   c.positions = quads.positions;
   c.kind.assign(quads.positions.size(), VertexKind::kFree);
   c.anchor.assign(quads.positions.size(), -1);
+  c.near_face.assign(quads.positions.size(), -1);
   return c;
 }
 

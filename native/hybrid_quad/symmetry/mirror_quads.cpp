@@ -52,6 +52,7 @@ void add_image(Mirrored& m, int axis, int curve_count) {
     mesh.positions.push_back(p);
     mesh.kind.push_back(mesh.kind[v]);
     mesh.anchor.push_back(mesh.kind[v] == VertexKind::kCorner ? -1 : mesh.anchor[v]);
+    mesh.near_face.push_back(-1);
     m.vertex_planes.push_back(m.vertex_planes[v]);
   }
   for (std::size_t q = 0, count = mesh.quads.size(); q < count; ++q) {

@@ -19,6 +19,7 @@ class SurfaceRemesher {
 
   const EditableMesh& mesh() const { return mesh_; }
   double target_length(int v) const { return vertex_[v].target; }
+  int near_face(int v) const { return vertex_[v].hint; }
   int input_vertex(int v) const { return vertex_[v].input; }
 
  private:

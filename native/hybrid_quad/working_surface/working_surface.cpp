@@ -34,6 +34,7 @@ WorkingSurface build_working_surface(const SurfaceIndex& index, const FeatureGra
   std::vector<double> vertex_target;
   for (const int slot : compacted.vertex_slot) {
     surface.input_vertex.push_back(remesher.input_vertex(slot));
+    surface.near_face.push_back(remesher.near_face(slot));
     vertex_target.push_back(remesher.target_length(slot));
   }
   for (const auto& t : surface.mesh.faces())
@@ -78,6 +79,7 @@ std::vector<std::string> violations_of(const WorkingSurface& surface, const Tria
   const TriangleMesh& m = surface.mesh;
   if (m.euler_characteristic() != input.euler_characteristic()) found.push_back("the Euler characteristic changed");
   if (static_cast<int>(surface.input_vertex.size()) != m.vertex_count()) found.push_back("input_vertex has a wrong size");
+  if (static_cast<int>(surface.near_face.size()) != m.vertex_count()) found.push_back("near_face has a wrong size");
   if (static_cast<int>(surface.target_length.size()) != m.face_count()) found.push_back("target_length has a wrong size");
   for (int f = 0; f < m.face_count(); ++f)
     if (!(m.area_normal(f).norm() > 0)) found.push_back("face " + std::to_string(f) + " has no area");

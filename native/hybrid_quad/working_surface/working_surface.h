@@ -13,6 +13,7 @@ struct WorkingSurface {
   TriangleMesh mesh;
   FeatureGraph features;            ///< the same curves (same ids, same direction) and regions (same ids) as the input's
   std::vector<int> input_vertex;    ///< #V: the input vertex it is, or -1 for a vertex made here; corners always have one
+  std::vector<int> near_face;  ///< #V: an input face about the vertex, on its sheet however near others are
   std::vector<double> target_length;  ///< #F: asked quad edge length h at the face (scene units)
 };
 

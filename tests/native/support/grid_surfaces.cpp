@@ -26,7 +26,11 @@ WorkingSurface surface_of(TriangleMesh mesh, double h, double sharp_angle) {
   options.sharp_angle = sharp_angle;
   surface.features = detect_features(surface.mesh, options, RunContext{});
   surface.input_vertex.resize(surface.mesh.vertex_count());
-  for (int v = 0; v < surface.mesh.vertex_count(); ++v) surface.input_vertex[v] = v;
+  surface.near_face.resize(surface.mesh.vertex_count());
+  for (int v = 0; v < surface.mesh.vertex_count(); ++v) {
+    surface.input_vertex[v] = v;
+    surface.near_face[v] = surface.mesh.outgoing(v) / 3;
+  }
   surface.target_length.assign(surface.mesh.face_count(), h);
   return surface;
 }

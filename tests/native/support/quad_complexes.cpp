@@ -17,6 +17,7 @@ QuadComplex from_gluing(std::vector<int> opposite, const std::vector<Vector3>& d
     if (c.vertex[d] == static_cast<int>(c.positions.size())) c.positions.push_back(dart_origin[d]);
   c.kind.assign(c.positions.size(), VertexKind::kFree);
   c.anchor.assign(c.positions.size(), 0);
+  c.near_face.assign(c.positions.size(), -1);
   return c;
 }
 
