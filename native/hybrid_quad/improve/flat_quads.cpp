@@ -1,5 +1,6 @@
 #include "hybrid_quad/improve/improve.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -8,8 +9,9 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kLeastArea = 1e-10;  // over the squared mean edge length
-constexpr double kNewArea = 1e-9;     // the same
-constexpr double kStep = 4.5e-5;      // over the mean edge length: squares about such diagonals have that area
+constexpr double kNewArea = 1e-9;     // the same: at least
+constexpr double kStep = 1e-4;        // over the mean edge length: so that single precision keeps it, where there is room
+constexpr double kRoom = 0.02;        // of the other diagonal
 
 class FlatQuadOpener {
  public:
@@ -60,8 +62,8 @@ class FlatQuadOpener {
     const double longest = kStep * edge_;
     // Around small quads such a step is long, and would turn others over.
     const auto step_beside = [&](const Vector3& d) {
-      const double length = d.norm(), area = kNewArea * edge_ * edge_;
-      return length * longest > 2 * area ? 2 * area / length : longest;
+      const double length = d.norm();
+      return std::min(longest, std::max(kRoom * length, 2 * kNewArea * edge_ * edge_ / length));
     };
     Vector3 d0 = diagonal(q, 0);
     const Vector3 d1 = diagonal(q, 1);

@@ -85,7 +85,7 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const SurfaceIndex* whole = nullptr);
 
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
-/// a twenty thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
+/// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).
 /// \param edge  mean edge length of all that the quads are part of
 /// \returns number of quads opened
