@@ -12,6 +12,7 @@ constexpr double kLeastArea = 1e-10;  // over the squared mean edge length
 constexpr double kNewArea = 1e-9;     // the same: at least
 constexpr double kStep = 1e-4;        // over the mean edge length: so that single precision keeps it, where there is room
 constexpr double kRoom = 0.02;        // of the other diagonal
+constexpr double kLong = 4.5e-5;  // over the mean edge length: two such diagonals make the new area
 
 class FlatQuadOpener {
  public:
@@ -67,7 +68,7 @@ class FlatQuadOpener {
     };
     Vector3 d0 = diagonal(q, 0);
     const Vector3 d1 = diagonal(q, 1);
-    const auto across = [&](const Vector3& d) { return Vector3(d - n * n.dot(d)).norm() > longest; };
+    const auto across = [&](const Vector3& d) { return Vector3(d - n * n.dot(d)).norm() > kLong * edge_; };
     if (!across(d0)) {
       const Vector3 along = across(d1) ? Vector3(d1.cross(n)) : n.unitOrthogonal();
       lengthen(q, 0, (across(d1) ? step_beside(d1) : longest) * along.normalized());
