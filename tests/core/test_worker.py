@@ -296,7 +296,8 @@ def test_where_no_memory_is_left_the_run_says_so(long_run):
 
     run = long_run()
     used = int(Path(f"/proc/{run.process_id}/statm").read_text().split()[0]) * resource.getpagesize()
-    resource.prlimit(run.process_id, resource.RLIMIT_AS, (used, used))
+    limit = used + 4 * 2**20  # for the stack, which ends a process without a word where it can't grow
+    resource.prlimit(run.process_id, resource.RLIMIT_AS, (limit, limit))
     with pytest.raises((MemoryError, WorkerDied)) as caught:
         run.result()
     assert in_words(run.stage) in str(caught.value)
