@@ -116,7 +116,7 @@ MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex&
     for (int round = 0, last = -1; round < kRounds && changes != last; ++round) {
       last = changes;
       for (int i = 0; i < (quads ? static_cast<int>(quads->size()) : piece.mesh.quad_count()) && !mender.exhausted(); ++i) {
-        if ((i & 255) == 0) context.checkpoint();
+        if (quads || (i & 255) == 0) context.checkpoint();
         const int q = quads ? (*quads)[i] : i;
         if (piece.mesh.alive(q)) changes += change(q);
       }
