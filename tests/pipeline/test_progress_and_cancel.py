@@ -34,22 +34,22 @@ def test_progress_does_not_flood_the_caller():
     assert len(times) <= 20 * (times[-1] - times[0]) + 3
 
 
-@pytest.mark.parametrize("after", [0.0, 0.3, 1.0, 2.0])
-def test_a_request_to_stop_is_answered_within_a_second(after):
-    begin = time.monotonic()
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7])
+def test_a_request_to_stop_is_answered_within_a_second(share):
+    """Asks at a share of the progress: no moment on a clock lies within the run on every machine."""
+    reached = [0.0]
     asked = []
 
     def cancel():
-        if time.monotonic() - begin < after:
+        if reached[-1] < share:
             return False
         asked.append(time.monotonic())
         return True
 
     with pytest.raises(hybrid_quad.Cancelled) as caught:
-        hybrid_quad.remesh(*BIG, quads=20000, cancel=cancel)
+        hybrid_quad.remesh(*BIG, quads=20000, cancel=cancel, progress=lambda _, fraction: reached.append(fraction))
     assert caught.value.code == "cancelled"
     assert time.monotonic() - asked[0] < 1.0
-    assert time.monotonic() - begin < after + 1.5
 
 
 def test_a_request_to_stop_at_any_poll_is_answered_at_once():
@@ -91,9 +91,9 @@ def test_the_memory_limit_holds():
 def test_the_time_limit_holds():
     begin = time.monotonic()
     with pytest.raises(hybrid_quad.Cancelled) as caught:
-        hybrid_quad.remesh(*BIG, quads=20000, time_limit=0.5)
+        hybrid_quad.remesh(*BIG, quads=20000, time_limit=0.2)
     assert caught.value.code == "time_limit"
-    assert time.monotonic() - begin < 1.6
+    assert time.monotonic() - begin < 1.2
 
 
 class Surprise(Exception):
