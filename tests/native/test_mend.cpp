@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hybrid_quad/improve/mend.h"
 #include "hybrid_quad/improve/place_search.h"
 #include "hybrid_quad/improve/restoration.h"
@@ -77,6 +79,56 @@ TEST(Workpiece, AVertexStaysOnTheSheetItIsNear) {
     piece.bind_all();
     for (const Vector3& p : piece.mesh.positions) EXPECT_NEAR(p.z(), near < 0 ? kGap : 0, 1e-12);
     for (const int f : piece.face) EXPECT_EQ(f < count, near == 0);
+  }
+}
+
+TEST(Workpiece, LocatingLeavesVerticesWhereTheyAre) {
+  Sheet sheet;
+  for (Vector3& p : sheet.quads.positions) p.z() = 0.01;
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  piece.locate_all();
+  EXPECT_EQ(piece.mesh.positions, sheet.quads.positions);
+  for (int v = 0; v < piece.mesh.vertex_count(); ++v) {
+    ASSERT_GE(piece.face[v], 0);
+    EXPECT_LT((piece.walk(sheet.quads.positions[v], piece.face[v]).position - sheet.quads.positions[v]).norm(), 0.01 + 1e-9);
+  }
+}
+
+TEST(FutileMending, KnowsAPlaceUntilSomethingNearItChanges) {
+  Sheet sheet;
+  const Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  FutileMending futile(piece.h);
+  constexpr int kCorner = 0;
+  EXPECT_FALSE(futile.knows(piece, kCorner));
+  futile.remember(piece, kCorner);
+  EXPECT_TRUE(futile.knows(piece, kCorner));
+  EXPECT_FALSE(futile.knows(piece, kCorner + 1));
+  const auto known_with = [&](int moved) {
+    Sheet other;
+    other.quads.positions[moved].x() += 0.01;
+    std::reverse(other.quads.quads.begin() + 1, other.quads.quads.end());  // what numbers quads have is no matter
+    return futile.knows(Workpiece(other.quads, other.input, other.features, other.index), kCorner);
+  };
+  EXPECT_TRUE(known_with(Sheet::id(9, 9)));
+  EXPECT_FALSE(known_with(Sheet::id(2, 2)));
+}
+
+TEST(Mend, WhatWasInVainIsNotTriedAgain) {
+  Sheet sheet;
+  std::swap(sheet.quads.positions[Sheet::id(5, 5)], sheet.quads.positions[Sheet::id(6, 5)]);
+  const std::vector<int> flawed = flawed_quads(sheet.quads, sheet.index, {1.0});
+  ASSERT_FALSE(flawed.empty());
+  for (const bool is_known : {true, false}) {
+    Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+    piece.locate_all();
+    Smoother smoother(piece, SmootherOptions{});
+    smoother.update_frames(true);
+    FutileMending futile(piece.h);
+    if (is_known)
+      for (const int q : flawed) futile.remember(piece, q);
+    const int changes = mend_listed(piece, smoother, sheet.index, {1.0}, RunContext{}, flawed, futile);
+    EXPECT_EQ(changes == 0, is_known);
+    EXPECT_EQ(piece.mesh.extract().positions == sheet.quads.positions, is_known);
   }
 }
 

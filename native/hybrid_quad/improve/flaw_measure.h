@@ -25,8 +25,7 @@ class FlawMeasure {
     if (known[0].corners == p) return known[0].is_flawed;
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].is_flawed;
-    const double area = 0.5 * (p[2] - p[0]).cross(p[3] - p[1]).norm();
-    known[0] = {p, !(area > kLeastArea * piece_.h * piece_.h) || is_inverted(p, whole_, agreement_)};
+    known[0] = {p, hybrid_quad::is_flawed(p, kLeastArea * piece_.h * piece_.h, whole_, agreement_)};
     return known[0].is_flawed;
   }
 

@@ -104,29 +104,47 @@ class Mender {
   SequenceSearch search_;
 };
 
+/// Changes some quads, or all (null), in rounds until one changes nothing.
+template <class Change>
+int in_rounds(const Workpiece& piece, const Mender& mender, const RunContext& context, const std::vector<int>* quads, const Change& change) {
+  constexpr int kRounds = 3;
+  int changes = 0;
+  for (int round = 0, last = -1; round < kRounds && changes != last; ++round) {
+    last = changes;
+    for (int i = 0; i < (quads ? static_cast<int>(quads->size()) : piece.mesh.quad_count()) && !mender.exhausted(); ++i) {
+      if (quads || (i & 255) == 0) context.checkpoint();
+      const int q = quads ? (*quads)[i] : i;
+      if (piece.mesh.alive(q)) changes += change(q);
+    }
+  }
+  return changes;
+}
+
+int mend_in_rounds(Workpiece& piece, Mender& mender, const RunContext& context, const std::vector<int>* quads, FutileMending& futile) {
+  return in_rounds(piece, mender, context, quads, [&](int q) {
+    if (!mender.is_flawed(q) || futile.knows(piece, q)) return false;
+    const bool mended = mender.mend(q);
+    if (!mended && !mender.exhausted()) futile.remember(piece, q);
+    return mended;
+  });
+}
+
 }  // namespace
 
 MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement,
-                       const RunContext& context, bool and_poor, const std::vector<int>* quads) {
-  constexpr int kRounds = 3;
+                       const RunContext& context) {
   Mender mender(piece, smoother, whole, agreement);
-  // Rounds over quads, until one changes nothing.
-  const auto in_rounds = [&](const auto& change) {
-    int changes = 0;
-    for (int round = 0, last = -1; round < kRounds && changes != last; ++round) {
-      last = changes;
-      for (int i = 0; i < (quads ? static_cast<int>(quads->size()) : piece.mesh.quad_count()) && !mender.exhausted(); ++i) {
-        if (quads || (i & 255) == 0) context.checkpoint();
-        const int q = quads ? (*quads)[i] : i;
-        if (piece.mesh.alive(q)) changes += change(q);
-      }
-    }
-    return changes;
-  };
+  FutileMending futile(piece.h);
   MendReport report;
-  report.mended = in_rounds([&](int q) { return mender.is_flawed(q) && mender.mend(q); });
-  if (and_poor) report.placed = in_rounds([&](int q) { return mender.is_poor(q) && mender.find_places(q); });
+  report.mended = mend_in_rounds(piece, mender, context, nullptr, futile);
+  report.placed = in_rounds(piece, mender, context, nullptr, [&](int q) { return mender.is_poor(q) && mender.find_places(q); });
   return report;
+}
+
+int mend_listed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement, const RunContext& context,
+                const std::vector<int>& quads, FutileMending& futile) {
+  Mender mender(piece, smoother, whole, agreement);
+  return mend_in_rounds(piece, mender, context, &quads, futile);
 }
 
 }  // namespace hybrid_quad

@@ -234,24 +234,27 @@ GuidePull Smoother::guide_pull(int v, double size) const {
   const auto guide_at = [&](int w) { return options_.guides->at(piece_.face[w], piece_.mesh.positions[w]); };
   const Vector3 own = guide_at(v), normal = piece_.input.normal(piece_.face[v]);
   if (own.isZero(0)) return sum;
+  const auto add_edge = [&](int other, double share) {
+    const Vector3 edge = piece_.mesh.positions[other] - piece_.mesh.positions[v];
+    // The guide in the middle of the edge, or an edge would be pulled to the inside of every bend.
+    const auto along_edge = [&](const Vector3& guide) {
+      const Vector3 turned = normal.cross(guide);
+      const Vector3& axis = std::abs(edge.dot(guide)) > std::abs(edge.dot(turned)) ? guide : turned;
+      return edge.dot(axis) < 0 ? Vector3(-axis) : axis;
+    };
+    Vector3 along = along_edge(own);
+    if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guide_at(other)));
+    const Vector3 across = normal.cross(along);  // as long as the guide is strong
+    const double weight = share * options_.guide_weight / (size * size);
+    sum.pull += weight * edge.dot(across) * across;
+    sum.stiffness += weight * across * across.transpose();
+  };
+  constexpr double kShareOnBoundary = 0.5;
   for (const int q : piece_.mesh.quads_at(v)) {
     const int k = piece_.mesh.corner_of(q, v);
-    for (const int other : {piece_.mesh.quad(q)[(k + 1) & 3], piece_.mesh.quad(q)[(k + 3) & 3]}) {
-      const Vector3 edge = piece_.mesh.positions[other] - piece_.mesh.positions[v];
-      // The guide in the middle of the edge, or an edge would be pulled to the inside of every bend.
-      const auto along_edge = [&](const Vector3& guide) {
-        const Vector3 turned = normal.cross(guide);
-        const Vector3& axis = std::abs(edge.dot(guide)) > std::abs(edge.dot(turned)) ? guide : turned;
-        return edge.dot(axis) < 0 ? Vector3(-axis) : axis;
-      };
-      Vector3 along = along_edge(own);
-      if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guide_at(other)));
-      const Vector3 across = normal.cross(along);  // as long as the guide is strong
-      // Every edge is met at two quads, but for those on a boundary.
-      const double weight = 0.5 * options_.guide_weight / (size * size);
-      sum.pull += weight * edge.dot(across) * across;
-      sum.stiffness += weight * across * across.transpose();
-    }
+    const EditMesh::Quad& corners = piece_.mesh.quad(q);
+    add_edge(corners[(k + 1) & 3], piece_.mesh.across(q, k) < 0 ? kShareOnBoundary : 1);
+    if (piece_.mesh.across(q, (k + 3) & 3) < 0) add_edge(corners[(k + 3) & 3], kShareOnBoundary);
   }
   return sum;
 }

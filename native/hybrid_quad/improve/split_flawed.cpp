@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <string_view>
+#include <optional>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/improve/flaw_memory.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/mend.h"
 #include "hybrid_quad/improve/side_splitting.h"
@@ -22,54 +21,12 @@ constexpr std::array<HexagonFill, 5> kFills{HexagonFill::kFirstEdge, HexagonFill
                                             HexagonFill::kStarAtSecond, HexagonFill::kInset};
 constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2, 0.5}, {0.5, 0.8}}};
 
-std::array<Vector3, 4> corners_of(const QuadMesh& mesh, int q) {
-  const auto& v = mesh.quads[q];
-  return {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]};
-}
-
-/// flawed_quads, which remembers quads by their corners: from one trial to the next nearly all stay where they are.
-class FlawMemory {
- public:
-  FlawMemory(const SurfaceIndex& whole, const Agreement& agreement, double edge)
-      : whole_(whole), agreement_(agreement), edge_(edge) {}
-
-  std::vector<int> flawed_of(const QuadMesh& mesh) {
-    std::vector<int> flawed;
-    for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)
-      if (is_flawed(corners_of(mesh, q))) flawed.push_back(q);
-    return flawed;
-  }
-
-  bool is_flawed(const std::array<Vector3, 4>& corners) {
-    constexpr double kLeastArea = 1e-10;
-    const auto [known, is_new] = known_.try_emplace(corners, false);
-    if (is_new)
-      known->second = !(0.5 * (corners[2] - corners[0]).cross(corners[3] - corners[1]).norm() > kLeastArea * edge_ * edge_) ||
-                      is_inverted(corners, whole_, agreement_);
-    return known->second;
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const std::array<Vector3, 4>& corners) const {
-      char bytes[sizeof(corners)];
-      std::memcpy(bytes, corners.data(), sizeof(corners));
-      return std::hash<std::string_view>()({bytes, sizeof(bytes)});
-    }
-  };
-
-  const SurfaceIndex& whole_;
-  Agreement agreement_;
-  double edge_;
-  std::unordered_map<std::array<Vector3, 4>, bool, Hash> known_;
-};
-
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                  const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
-        context_(context), memory_(whole, agreement, mean_edge_length(quads)) {}
+        context_(context), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
   int run() {
@@ -98,44 +55,56 @@ class FlawedSplitter {
     int flawed = 0, quads = 0;
   };
 
+  struct Outcome {
+    QuadMesh mesh;
+    std::vector<int> flawed;
+  };
+
   bool is_valid(const QuadMesh& mesh) const {
     return violations_of(mesh).empty() && euler_characteristic(mesh) == euler_characteristic(quads_);
   }
 
-  /// Splits a side of a flawed quad, if none has more that are flawed for it; `flawed` then are these.
+  /// Splits a side of a flawed quad: the first found that leaves fewer flawed ones, else the first that leaves as many; `flawed`
+  /// then are these.
   bool split_any(std::vector<int>& flawed) {
-    const std::vector<int> now = flawed;
     Workpiece piece(quads_, input_, features_, index_);
-    piece.bind_all();
+    piece.locate_all();
     const SideSplitter splitter(quads_, index_, piece.region);
-    for (const std::size_t most : {now.size() - 1, now.size()})
-      for (const int q : now)
-        if (split_at(q, most, splitter, piece, flawed)) return true;
-    return false;
+    std::optional<Outcome> best;
+    for (const int q : flawed) {
+      split_at(q, flawed.size(), splitter, piece, best);
+      if (best && best->flawed.size() < flawed.size()) break;
+    }
+    if (!best) return false;
+    quads_ = std::move(best->mesh);
+    flawed = std::move(best->flawed);
+    return true;
   }
 
-  /// \param most  so many flawed quads may be left
-  bool split_at(int q, std::size_t most, const SideSplitter& splitter, const Workpiece& piece, std::vector<int>& flawed) {
-    constexpr std::size_t kTrials = 8;
+  /// \param now  so many quads are flawed
+  /// \param best  so far
+  void split_at(int q, std::size_t now, const SideSplitter& splitter, const Workpiece& piece, std::optional<Outcome>& best) {
+    constexpr int kTrialsASide = 4;
     context_.checkpoint();
     std::vector<Candidate> candidates = candidates_at(q, splitter, piece);
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
       return std::make_tuple(x.flawed, -x.detour, x.quads) < std::make_tuple(y.flawed, -y.detour, y.quads);
     });
-    for (std::size_t i = 0; i < std::min(kTrials, candidates.size()) && trials_left_ > 0; ++i, --trials_left_) {
+    std::array<int, 4> trials{};
+    for (const Candidate& candidate : candidates) {
+      if (++trials[candidate.split.side] > kTrialsASide) continue;
+      if (--trials_left_ < 0) return;
       std::vector<int> changed;
-      QuadMesh mesh = splitter.split(candidates[i].split, candidates[i].path, &changed);
-      if (candidates[i].flawed > 0) mend(mesh, memory_.flawed_of(mesh));
+      QuadMesh mesh = splitter.split(candidate.split, candidate.path, &changed);
+      if (candidate.flawed > 0) mend(mesh, memory_.flawed_of(mesh));
       std::vector<int> left = memory_.flawed_of(mesh);
-      if (left.size() > most || !is_valid(mesh)) continue;
-      quads_ = std::move(mesh);
-      flawed = std::move(left);
-      return true;
+      if (left.size() > now || (best && left.size() >= best->flawed.size()) || !is_valid(mesh)) continue;
+      best = Outcome{std::move(mesh), std::move(left)};
+      if (best->flawed.size() < now) return;
     }
-    return false;
   }
 
-  std::vector<Candidate> candidates_at(int q, const SideSplitter& splitter, const Workpiece& piece) const {
+  std::vector<Candidate> candidates_at(int q, const SideSplitter& splitter, const Workpiece& piece) {
     std::vector<Candidate> out;
     for (int side = 0; side < 4; ++side) {
       if (!may_split(splitter, quads_.quads[q][side], quads_.quads[q][(side + 1) & 3])) continue;
@@ -151,7 +120,7 @@ class FlawedSplitter {
     return out;
   }
 
-  Candidate measured(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) const {
+  Candidate measured(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) {
     Candidate candidate{split, path_of(split, splitter, piece)};
     const auto& path = candidate.path;
     const double straight = (path[3] - path[0]).norm();
@@ -159,10 +128,7 @@ class FlawedSplitter {
     std::vector<int> changed;
     const QuadMesh mesh = splitter.split(split, candidate.path, &changed);
     candidate.quads = static_cast<int>(changed.size());
-    for (const int k : changed) {
-      const std::array<Vector3, 4> p = corners_of(mesh, k);
-      candidate.flawed += !((p[2] - p[0]).cross(p[3] - p[1]).norm() > 0) || is_inverted(p, whole_, agreement_);
-    }
+    for (const int k : changed) candidate.flawed += memory_.is_flawed(mesh, k);
     return candidate;
   }
 
@@ -187,16 +153,16 @@ class FlawedSplitter {
     return {from, at(split.first), at(split.second), to};
   }
 
-  void mend(QuadMesh& mesh, const std::vector<int>& flawed) const {
+  void mend(QuadMesh& mesh, const std::vector<int>& flawed) {
     Workpiece piece(mesh, input_, features_, index_);
     if (options_.target_length > 0) piece.h = options_.target_length;
     if (!(piece.h > 0)) return;
-    piece.bind_all();
+    piece.locate_all();
     SmootherOptions smoothing;
     smoothing.threads = context_.threads;
     Smoother smoother(piece, smoothing);
     smoother.update_frames(true);
-    mend_flawed(piece, smoother, whole_, agreement_, context_, false, &flawed);
+    mend_listed(piece, smoother, whole_, agreement_, context_, flawed, futile_);
     mesh = piece.mesh.extract(piece.face);
   }
 
@@ -209,7 +175,8 @@ class FlawedSplitter {
   const ImproveOptions& options_;
   const RunContext& context_;
   FlawMemory memory_;
-  int trials_left_ = 100;  ///< each takes some milliseconds for a thousand quads
+  FutileMending futile_;
+  int trials_left_ = 200;  ///< each takes some milliseconds for a thousand quads
 };
 
 }  // namespace

@@ -62,6 +62,12 @@ void Workpiece::bind_all() {
   place_on_curves();
 }
 
+void Workpiece::locate_all() {
+  const std::vector<Vector3> positions = mesh.positions;
+  bind_all();
+  mesh.positions = positions;
+}
+
 void Workpiece::bind_free(int v, const Vector3& normal) {
   SurfaceIndex::Filter filter;
   filter.region = region_filter(mesh.anchor(v));

@@ -29,6 +29,8 @@ struct Workpiece {
 
   /// Puts all vertices where their kind allows: corners and curve vertices exactly, free ones at the nearest point.
   void bind_all();
+  /// Finds these places, and leaves the vertices where they are: a fitted mesh is not on the surface.
+  void locate_all();
   /// Puts free vertex v at the point of its region nearest to where it is, on a face that looks along `normal`
   /// (zero: any).
   void bind_free(int v, const Vector3& normal);

@@ -153,16 +153,18 @@ std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surfac
   return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, agreement); });
 }
 
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement) {
+  return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement);
+}
+
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
   constexpr double kLeastArea = 1e-10;
   double sum = 0;
   for (const auto& v : mesh.quads)
     for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
   const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
-  return quads_that(mesh, threads, [&](int q) {
-    const std::array<Vector3, 4> corners = corners_of(mesh, q);
-    return !(area_vector(corners).norm() > kLeastArea * mean * mean) || is_inverted(corners, surface, agreement);
-  });
+  return quads_that(mesh, threads,
+                    [&](int q) { return is_flawed(corners_of(mesh, q), kLeastArea * mean * mean, surface, agreement); });
 }
 
 }  // namespace hybrid_quad

@@ -53,7 +53,10 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
 /// All quads that are. Ascending.
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
-/// Quads that are inverted, or without area (below 1e-10 of the squared mean edge length). Ascending.
+/// Whether a quad is inverted or has no more than so much area (scene units squared).
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement = {});
+
+/// Quads that are, where the least area is 1e-10 of the squared mean edge length. Ascending.
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
 /// Distances in percent of the diagonal of the input's bounding box.
