@@ -9,6 +9,7 @@ Ends Blender with status 0 or 1. FOLDER receives pictures of the window.
 from __future__ import annotations
 
 import os
+import random
 import signal
 import sys
 import time
@@ -22,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
 
 import hybrid_quad
-from hybrid_quad.blender import background_run
+from hybrid_quad.blender import background_run, operators
 from hybrid_quad.core.stage_names import in_words
 from hybrid_quad.worker import process
 from scenes import activate, add_cube, add_sphere
@@ -41,6 +42,7 @@ def steps() -> Iterator[float]:
     for test in (
         ended_by_escape,
         ended_in_every_stage,
+        ended_at_random_moments,
         ended_by_the_button,
         killed,
         out_of_memory,
@@ -115,6 +117,50 @@ def ended_in_every_stage() -> Iterator[float]:
         yield from expect_unchanged_after(lambda: press("ESC"))
         expect_said("was cancelled")
     expect(len(set(stages)) == 3, f"Esc came in several stages: {', '.join(stages)}")
+
+
+def ended_at_random_moments() -> Iterator[float]:
+    """From the key to the end of the worker's process; from reading the mesh to making the result's.
+
+    Blender tells of a key when it has drawn what there is to draw: half a second without a graphics card, more where other
+    work goes on. So the second is counted from there on, and the whole wait is printed.
+    """
+    began = time.monotonic()
+    yield from start(MEDIUM_RUN_QUADS)
+    while background_run.current() is not None:
+        yield 0.01
+    whole = time.monotonic() - began
+    told: list[float] = []
+    is_escape = operators.is_escape
+    operators.is_escape = lambda context, event: is_escape(context, event) and not told.append(time.monotonic())
+    answers, waits, stages = [], [], set()
+    for moment in random.Random(8).choices(range(100), k=20):
+        yield from new_scene()
+        yield from start(MEDIUM_RUN_QUADS)
+        run, before = background_run.current(), scene()
+        yield moment / 100 * whole
+        if background_run.current() is None:
+            continue
+        stage = run.status
+        told.clear()
+        asked = time.monotonic()
+        press("ESC")
+        while background_run.current() is not None:
+            yield 0.01
+        if "Sphere Quads" in bpy.data.objects:
+            continue  # the run was faster than the key
+        ended = time.monotonic()
+        answers.append(ended - told[0])
+        waits.append(ended - asked)
+        stages.add(stage)
+        expect(run.worker is None or run.worker.wait(0), "the process is gone")
+        yield 0.1
+        expect(scene() == before, "nothing has changed")
+    operators.is_escape = is_escape
+    print(f"{len(waits)} of 20 while {', '.join(sorted(stages))}", flush=True)
+    for what, seconds in (("answers", answers), ("waits", waits)):
+        print(f"{what}: {' '.join(f'{second:.2f}' for second in sorted(seconds))} s", flush=True)
+    expect(len(stages) >= 3 and max(answers) < 1, "Esc is answered within a second")
 
 
 def ended_by_the_button() -> Iterator[float]:
