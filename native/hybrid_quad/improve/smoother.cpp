@@ -29,7 +29,8 @@ struct Smoother::Derivatives {
   double hessian[3] = {0, 0, 0};  ///< 00, 01, 11
 };
 
-Smoother::Smoother(Workpiece& piece, const SmootherOptions& options) : piece_(piece), options_(options) {
+Smoother::Smoother(Workpiece& piece, const SmootherOptions& options)
+    : piece_(piece), options_(options), guides_(piece, options.guides) {
   if (options.asked_lengths != nullptr) asked_areas_ = AskedAreas(piece.input, *options.asked_lengths);
   update_frames(true);
 }
@@ -230,9 +231,8 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
 GuidePull Smoother::guide_pull(int v, double size) const {
   GuidePull sum;
   if (options_.rings != nullptr) options_.rings->add_to(sum, v, piece_.mesh.positions, vertex_normal(v), size);
-  if (options_.guides == nullptr || options_.guides->empty()) return sum;
-  const auto guide_at = [&](int w) { return options_.guides->at(piece_.face[w], piece_.mesh.positions[w]); };
-  const Vector3 own = guide_at(v), normal = piece_.input.normal(piece_.face[v]);
+  if (guides_.empty()) return sum;
+  const Vector3 own = guides_.at(v), normal = piece_.input.normal(piece_.face[v]);
   if (own.isZero(0)) return sum;
   const auto add_edge = [&](int other, double share) {
     const Vector3 edge = piece_.mesh.positions[other] - piece_.mesh.positions[v];
@@ -243,7 +243,7 @@ GuidePull Smoother::guide_pull(int v, double size) const {
       return edge.dot(axis) < 0 ? Vector3(-axis) : axis;
     };
     Vector3 along = along_edge(own);
-    if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guide_at(other)));
+    if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guides_.at(other)));
     const Vector3 across = normal.cross(along);  // as long as the guide is strong
     const double weight = share * options_.guide_weight / (size * size);
     sum.pull += weight * edge.dot(across) * across;
@@ -276,6 +276,7 @@ double Smoother::move_free(int v, double size) {
   basis[1] = normal.cross(basis[0]);
   Derivatives d;
   const double before = energy(v, start, basis, 2, d);
+  guides_.remember(v);
   const GuidePull guide = guide_pull(v, size);
   for (int i = 0; i < 2; ++i) d.gradient[i] -= 2 * guide.pull.dot(basis[i]);
   for (int i = 0; i < 3; ++i) d.hessian[i] += 2 * basis[i / 2].dot(guide.stiffness * basis[(i + 1) / 2]);
@@ -298,6 +299,7 @@ double Smoother::move_free(int v, double size) {
     if (target.face >= 0 && energy(v, target.position) + guide.change(target.position - start) < before) {
       piece_.mesh.positions[v] = target.position;
       piece_.face[v] = target.face;
+      guides_.remember(v);
       return (target.position - start).norm();
     }
     step *= kBacktrack;
@@ -351,6 +353,7 @@ void Smoother::relax(const std::vector<int>& vertices, int sweeps, double eps) {
   for (const int v : vertices) quads.insert(quads.end(), piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
   std::sort(quads.begin(), quads.end());
   quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
+  guides_.make_room();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     update_frames(quads, sweep == 0);
     double largest = 0;
@@ -365,6 +368,7 @@ void Smoother::smooth(int sweeps, const RunContext& context) {
   const int n = piece_.mesh.vertex_count();
   const std::vector<std::vector<int>> colours = vertices_by_colour(piece_.mesh);
   std::vector<char> active(n, 1), moved(n, 0);
+  guides_.make_room();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.checkpoint(static_cast<double>(sweep) / sweeps);
     update_frames(sweep == 0 || sweep == 4 || sweep == 12);

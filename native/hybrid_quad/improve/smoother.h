@@ -7,6 +7,7 @@
 #include "hybrid_quad/improve/asked_areas.h"
 #include "hybrid_quad/improve/corner_energy.h"
 #include "hybrid_quad/improve/ring_pulls.h"
+#include "hybrid_quad/improve/vertex_guides.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
@@ -66,6 +67,7 @@ class Smoother {
   AskedAreas asked_areas_;
   std::vector<double> own_area_;
   std::vector<int> centre_face_;
+  VertexGuides guides_;
 };
 
 }  // namespace hybrid_quad

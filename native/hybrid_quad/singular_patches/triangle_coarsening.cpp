@@ -188,9 +188,12 @@ void CoarseTriangles::collapse(int h, std::vector<int>& touched) {
 void CoarseTriangles::coarsen(double length, bool keep_shape, const RunContext& context) {
   using Entry = std::tuple<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  std::vector<double> queued_length(vertex_.size(), -1);  // of each side that waits in the queue
   const auto push = [&](int h) {
     const double l = edge_length(h);
-    if (l < length) queue.emplace(l, h);
+    if (!(l < length) || queued_length[h] == l) return;
+    queued_length[h] = l;
+    queue.emplace(l, h);
   };
   for (int h = 0; h < static_cast<int>(vertex_.size()); ++h) push(h);
   std::vector<int> touched;
@@ -198,6 +201,8 @@ void CoarseTriangles::coarsen(double length, bool keep_shape, const RunContext& 
     if (steps % 4096 == 0) context.checkpoint();
     const auto [expected, h] = queue.top();
     queue.pop();
+    if (queued_length[h] != expected) continue;
+    queued_length[h] = -1;
     if (!alive_[h / 3] || edge_length(h) != expected || !can_collapse(h)) continue;
     if (keep_shape && !keeps_shape(h, 2 * length)) continue;
     collapse(h, touched);
