@@ -84,7 +84,7 @@ class FlawedSplitter {
   /// \param now  so many quads are flawed
   /// \param best  so far
   void split_at(int q, std::size_t now, const SideSplitter& splitter, const Workpiece& piece, std::optional<Outcome>& best) {
-    constexpr int kTrialsASide = 4;
+    constexpr int kTrialsASide = 8;
     context_.checkpoint();
     std::vector<Candidate> candidates = candidates_at(q, splitter, piece);
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
