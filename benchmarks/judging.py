@@ -19,7 +19,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import whole_surface
+
 SHARP_ANGLE = 40.0  # degrees; the judge's own default
+SAMPLED_CHECK = "no_inverted"  # the one that looks at random points of the input
 REMEMBERED = 4  # inputs, and results of each function
 
 
@@ -62,8 +65,20 @@ class Judges:
 def _judge(script: Path, quads: int, source: Path, result: Path) -> dict[str, Any]:
     judge = _load(script)
     vertices, faces = _input(script, source, source.stat().st_mtime_ns)
-    judgement: dict[str, Any] = judge.judge(vertices, faces, *judge.read_obj(result), SHARP_ANGLE, None, quads)
+    mesh = judge.read_obj(result)
+    judgement: dict[str, Any] = judge.judge(vertices, faces, *mesh, SHARP_ANGLE, None, quads)
+    if judgement.get("failed") == [SAMPLED_CHECK]:
+        judgement["inverted_by_whole_surface"] = _without_samples(judge, vertices, faces, *mesh)
     return judgement
+
+
+def _without_samples(judge: ModuleType, vertices: Any, faces: Any, *mesh: Any) -> int:
+    sampling = judge.count_inverted
+    judge.count_inverted = whole_surface.count_inverted
+    try:
+        return int(judge.judge(vertices, faces, *mesh, SHARP_ANGLE, None, None)["inverted"])
+    finally:
+        judge.count_inverted = sampling
 
 
 @functools.lru_cache(maxsize=1)
