@@ -90,5 +90,31 @@ TEST(RegularQuads, PatchesFillWhatIsNotRegular) {
   }
 }
 
+/// Where faces that are not regular lie between two parts of a curve, each part keeps the places that the chart beside it gives it.
+TEST(RegularQuads, CurvesFollowChartsThatDoNotContinueEachOther) {
+  for (const std::int64_t shift : {kGridUnit / 3, -kGridUnit / 5, kGridUnit}) {
+    Scene s = rectangle(24, 18, 12, 9);
+    const TriangleMesh& mesh = s.surface.mesh;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+      const auto& v = mesh.face(f);
+      const double x = (mesh.position(v[0])[0] + mesh.position(v[1])[0] + mesh.position(v[2])[0]) / 3;
+      s.param.is_regular[f] = x < 3 || (x > 4 && x < 8) || x > 9;
+      if (x > 4 && x < 8)
+        for (int i = 0; i < 3; ++i)
+          for (int axis = 0; axis < 2; ++axis) {
+            const Vector3& row = axis ? s.frames.dv[f] : s.frames.du[f];
+            s.param.corner_uv[3 * f + i][axis] += std::llround(row[0] * static_cast<double>(shift));
+          }
+    }
+    RegularQuads q = extract_regular_quads(s.surface, s.frames, s.param, RunContext{});
+    EXPECT_TRUE(violations_of(q).empty());
+    EXPECT_GT(q.side.size(), 54u + 18u) << "of 54 beside the band and 27 in it that are whole";
+    const SingularPatches patches = fill_singular_patches(s.surface, s.frames, s.param, q, PatchOptions{}, RunContext{});
+    const QuadComplex complex = assemble_quads(s.surface, q, patches);
+    EXPECT_TRUE(violations_of(complex).empty());
+    EXPECT_EQ(euler_characteristic(complex), 1);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_quad

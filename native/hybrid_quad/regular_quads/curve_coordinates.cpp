@@ -101,8 +101,14 @@ class CurveBuilder {
     const int edges = static_cast<int>(edges_.size());
     auto& result = out_.curves[id];
     result.position.assign(edges + 1, 0);
+    has_jump_.assign(edges, 0);
     start_of_curve(curve, result);
-    for (int i = 0; i < edges; ++i) result.position[i + 1] = result.position[i] + tangential(edges_[i], param_.halfedge_uv);
+    for (int i = 0; i < edges; ++i) {
+      const std::int64_t jump = jump_before(edges_[i], result.position[i], result.parity);
+      if (jump != 0) has_jump_[std::max(0, i - 1)] = 1;
+      if (i > 0) result.position[i] += jump;
+      result.position[i + 1] = result.position[i] + (i == 0 ? jump : 0) + tangential(edges_[i], param_.halfedge_uv);
+    }
     make_monotone(curve, result);
   }
 
@@ -150,10 +156,28 @@ class CurveBuilder {
     return halfedge_uv[e.halfedge][axis] * sense * (e.along ? 1 : -1);
   }
 
+  /// How far the chart beside an edge is from a curve that has come to x before it, as its lines and the signs of its grid points go: not
+  /// at all, unless something singular lies between.
+  std::int64_t jump_before(const CurveEdge& e, std::int64_t x, int parity) const {
+    constexpr std::int64_t kPeriod = 2 * kGridUnit;
+    CurveEdge beside = e;
+    const int o = surface_.mesh.opposite(e.halfedge);
+    if (!param_.is_regular[e.halfedge / 3]) beside = {o, !e.along};
+    if (beside.halfedge < 0 || !param_.is_regular[beside.halfedge / 3]) return 0;
+    const auto [axis, sense] = axis_of(beside);
+    const GridVector& uv = start_of(beside);
+    const std::int64_t line = round_to_grid(uv[1 - axis]) / kGridUnit;
+    const std::int64_t jump = (uv[axis] * sense + (line - parity) * kGridUnit - x) % kPeriod;
+    return jump > kGridUnit ? jump - kPeriod : jump <= -kGridUnit ? jump + kPeriod : jump;
+  }
+
+  /// Where the curve comes to an edge, in the chart beside it.
+  const GridVector& start_of(const CurveEdge& e) const { return param_.corner_uv[e.along ? e.halfedge : TriangleMesh::next(e.halfedge)]; }
+
   void start_of_curve(const FeatureCurve& curve, CurveCoordinates::Curve& result) const {
     const CurveEdge& e = edges_[0];
     const auto [axis, sense] = axis_of(e);
-    const GridVector uv = param_.corner_uv[e.along ? e.halfedge : TriangleMesh::next(e.halfedge)];
+    const GridVector& uv = start_of(e);
     result.position[0] = uv[axis] * sense;
     if (!curve.closed) result.position[0] = round_to_grid(result.position[0]);
     result.parity = static_cast<int>((round_to_grid(uv[1 - axis]) / kGridUnit) & 1);
@@ -191,7 +215,7 @@ class CurveBuilder {
     for (int i = 0; i < n;) {
       int j = i + 1;
       while (!sound[j]) ++j;
-      const bool exact = j == i + 1 && (j < n || end_is_sound);
+      const bool exact = j == i + 1 && (j < n || end_is_sound) && !has_jump_[i];
       if (!exact) interpolate(s, i, j, s[j]);
       i = j;
     }
@@ -221,6 +245,7 @@ class CurveBuilder {
   CurveCoordinates& out_;
   std::vector<CurveEdge> edges_;
   std::vector<double> arc_length_;
+  std::vector<char> has_jump_;  ///< edges at which charts beside the curve do not continue each other
 };
 
 }  // namespace
