@@ -65,9 +65,14 @@ class PlaceSearch {
     return out;
   }
 
+  /// What lies around a hub, where hundreds of quads may meet, hardly helps a quad on one side of it.
   std::vector<int> with_ring(const std::vector<int>& vertices) const {
+    constexpr int kHub = 16;  // quads
     std::set<int> ring(vertices.begin(), vertices.end());
-    for (const int q : quads_at(vertices)) ring.insert(piece_.mesh.quad(q).begin(), piece_.mesh.quad(q).end());
+    for (const int v : vertices) {
+      if (piece_.mesh.valence(v) > kHub) continue;
+      for (const int q : piece_.mesh.quads_at(v)) ring.insert(piece_.mesh.quad(q).begin(), piece_.mesh.quad(q).end());
+    }
     return {ring.begin(), ring.end()};
   }
 
