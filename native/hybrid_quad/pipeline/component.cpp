@@ -1,6 +1,7 @@
 #include "hybrid_quad/pipeline/component.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/component_pass.h"
@@ -71,7 +72,7 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
   return out;
 }
 
-/// What no pass puts right. Not where guides follow the quads' edges.
+/// Splits sides of flawed quads. Not where guides follow the quads' edges.
 void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
                   ComponentResult& result, StageClock& clock, const RunContext& context) {
   const Finishing finishing(plan, whole, wishes, options);
@@ -92,14 +93,20 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   ComponentPlan fewer_features;
   const ComponentPlan* plan_of_best = &planned;
   std::string broken;
-  bool any = false;
+  constexpr int kFewFlawed = 6, kWorse = 2;  // times as many flawed with shorter edges: with still shorter ones there are more
+  bool any = false, has_tried_splits = false;
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
   std::vector<Vector3> flawed;
   for (PassSettings settings : kSettings) {
     settings.is_rough = is_rough;
-    if (any && is_only_for_flawed(settings.kind) && best.flawed_quads == 0) break;
+    if (any && is_only_for_flawed(settings.kind)) {
+      // What follows costs features or quads: a few sides that are split cost less.
+      if (!std::exchange(has_tried_splits, true) && best.flawed_quads > 0 && best.flawed_quads <= kFewFlawed && planned.guides.empty())
+        split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
+      if (best.flawed_quads == 0) break;
+    }
     if (any && is_hopeless(settings, best)) continue;
     const bool without_features = settings.kind == PassKind::kWithoutFeatures, as_needed = settings.kind == PassKind::kAsNeeded;
     if (without_features) {
@@ -122,6 +129,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       flawed.insert(flawed.end(), result.flawed_places.begin(), result.flawed_places.end());
       const ComponentPlan& unrefined = without_features ? fewer_features : planned;
       if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
+      const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;
       if (any) budget.left -= result.work;
@@ -133,7 +141,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
         best.passes = result.passes;
       }
       any = true;
-      if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
+      if (is_in_vain || (best.doubtful_quads == 0 && best.missed_counts == 0)) break;
     } catch (const InternalError& error) {
       broken = error.what();
       ++best.passes;
