@@ -1,7 +1,6 @@
 #include "hybrid_quad/pipeline/component.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/component_pass.h"
@@ -72,7 +71,7 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
   return out;
 }
 
-/// Splits sides of flawed quads. Not where guides follow the quads' edges.
+/// What no pass puts right. Not where guides follow the quads' edges.
 void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
                   ComponentResult& result, StageClock& clock, const RunContext& context) {
   const Finishing finishing(plan, whole, wishes, options);
@@ -93,20 +92,15 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   ComponentPlan fewer_features;
   const ComponentPlan* plan_of_best = &planned;
   std::string broken;
-  constexpr int kFewFlawed = 6, kWorse = 2;  // times as many flawed with shorter edges: with still shorter ones there are more
-  bool any = false, has_tried_splits = false;
+  constexpr int kWorse = 2;  // times as many flawed with shorter edges: with still shorter ones there are more
+  bool any = false;
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
   std::vector<Vector3> flawed;
   for (PassSettings settings : kSettings) {
     settings.is_rough = is_rough;
-    if (any && is_only_for_flawed(settings.kind)) {
-      // What follows costs features or quads: a few sides that are split cost less.
-      if (!std::exchange(has_tried_splits, true) && best.flawed_quads > 0 && best.flawed_quads <= kFewFlawed && planned.guides.empty())
-        split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
-      if (best.flawed_quads == 0) break;
-    }
+    if (any && is_only_for_flawed(settings.kind) && best.flawed_quads == 0) break;
     if (any && is_hopeless(settings, best)) continue;
     const bool without_features = settings.kind == PassKind::kWithoutFeatures, as_needed = settings.kind == PassKind::kAsNeeded;
     if (without_features) {
