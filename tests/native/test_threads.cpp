@@ -1,10 +1,15 @@
 // The whole pipeline on several threads, and two runs at once: what a thread sanitizer has to see.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <numeric>
 #include <thread>
 #include <vector>
 
+#include "hybrid_quad/base/interruptible.h"
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/base/parallel_forest.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "support/meshes.h"
@@ -77,6 +82,28 @@ TEST(Threads, WhatANodeThrowsEndsTheForest) {
   EXPECT_THROW(parallel_forest(parent, 2, work), Cancelled);
   EXPECT_FALSE(root_begun);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve all addresses there are
+/// Leaves no room for another thread's stack. \returns whether everything was done all the same
+bool works_without_threads() {
+  constexpr int kCount = 1000, kThreads = 64;
+  std::vector<int> done(kCount, 0), visited(kCount, 0);
+  std::vector<int> parent(kCount, -1);
+  const rlimit none{0, RLIM_INFINITY};
+  if (setrlimit(RLIMIT_AS, &none) != 0) return false;
+  parallel_for(kCount, kThreads, [&](int i) { ++done[i]; });
+  parallel_forest(parent, kThreads, [&](int i) { ++visited[i]; });
+  bool ran = false;
+  RunContext context;
+  context.stop_requested = [] { return false; };
+  run_interruptibly(context, 0.5, [&] { ran = true; });
+  return ran && std::accumulate(done.begin(), done.end(), 0) == kCount && std::accumulate(visited.begin(), visited.end(), 0) == kCount;
+}
+
+TEST(Threads, WhereThereAreNoMoreTheCallersDoesItAll) {
+  EXPECT_EXIT(std::_Exit(works_without_threads() ? 0 : 1), testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST(Threads, RunsDoNotDisturbEachOther) {
   const PolygonSoup soup = soup_of(test::flat_grid(12, 12));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <thread>
 #include <vector>
 
+#include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/base/run_context.h"
 
 namespace hybrid_quad {
@@ -27,10 +27,7 @@ void parallel_for(int count, int threads, const Work& work) {
       }
     }
   };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < std::min(threads, count); ++t) pool.emplace_back(run);
-  run();
-  for (std::thread& t : pool) t.join();
+  run_on_threads(std::min(threads, count), run);
   for (const std::exception_ptr& e : errors)
     if (e) std::rethrow_exception(e);
 }

@@ -5,8 +5,9 @@
 #include <exception>
 #include <mutex>
 #include <queue>
-#include <thread>
 #include <vector>
+
+#include "hybrid_quad/base/helper_threads.h"
 
 namespace hybrid_quad {
 
@@ -51,10 +52,7 @@ void parallel_forest(const std::vector<int>& parent, int threads, const Work& wo
       changed.notify_all();
     }
   };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < std::min(threads, count); ++t) pool.emplace_back(run);
-  run();
-  for (std::thread& t : pool) t.join();
+  run_on_threads(std::min(threads, count), run);
   if (error) std::rethrow_exception(error);
 }
 
