@@ -117,6 +117,21 @@ def test_views_are_drawn_anew_for_results_and_not_for_news(monkeypatch):
     assert views == [sessions.field.session.result] and told
 
 
+def test_the_time_in_which_the_window_is_drawn_after_a_change_counts_as_calm():
+    obj = add_grid()
+    show(show_field=True)
+    settle()
+    session = sessions.field.session
+    obj.hybrid_quad.quads += 100
+    obj.update_tag()  # as the panel does
+    bpy.context.view_layer.update()
+    assert session._changed_at is not None
+    session._changed_at -= 1.0
+    sessions.step()
+    assert session._worker is not None
+    settle()
+
+
 def test_sculpt_mode_is_followed_and_edit_mode_when_it_is_left():
     obj = add_grid()
     show(show_field=True)

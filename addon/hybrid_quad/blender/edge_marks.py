@@ -187,17 +187,18 @@ def read(
     for mark, of_edge in values.items():
         marks[of_edge > 0] |= mark
     face_values = {MATERIAL: _read(mesh.polygons, "material_index", np.int32), FACE_SET: _read_face_sets(mesh)}
+    face_values = {mark: of_face for mark, of_face in face_values.items() if _varies(of_face)}
     uv = _read_uv(mesh)
     vertex_count = len(mesh.vertices)
-    yield
-    sides = EdgeSides(polygons, edges, vertex_count)
-    yield
-    for mark, of_face in face_values.items():
-        if of_face is not None:
-            marks[sides.where_faces_differ(of_face)] |= mark
-    if uv is not None:
+    if face_values or uv is not None:
         yield
-        marks[sides.where_corners_differ(uv[corner_order])] |= UV_ISLAND
+        sides = EdgeSides(polygons, edges, vertex_count)
+        yield
+        for mark, of_face in face_values.items():
+            marks[sides.where_faces_differ(of_face)] |= mark
+        if uv is not None:
+            yield
+            marks[sides.where_corners_differ(uv[corner_order])] |= UV_ISLAND
     return EdgeValues(marks, values[CREASE].astype(np.float32), values[BEVEL].astype(np.float32))
 
 
@@ -260,6 +261,11 @@ def _read_face_sets(mesh: bpy.types.Mesh) -> Any:
     if attribute is None or (attribute.domain, attribute.data_type) != ("FACE", "INT"):
         return None
     return _read(attribute.data, "value", np.int32)
+
+
+def _varies(of_face: Any) -> bool:
+    """Whether faces have values, and not all the same."""
+    return of_face is not None and bool((of_face != of_face[:1]).any())
 
 
 def _read_uv(mesh: bpy.types.Mesh) -> Any:

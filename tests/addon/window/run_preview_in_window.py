@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
 import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -24,9 +25,10 @@ from run_in_window import expect, in_view, main, show_sidebar_tab, take_picture,
 import hybrid_quad
 from hybrid_quad.blender import panels as main_panels
 from hybrid_quad.blender.preview import drawing, panels, sessions
-from scenes import activate, add_cube
+from scenes import activate, add_cube, add_grid, add_sphere
 
 PATIENCE = 90
+BALL = 5  # pixels from the middle of a singularity's ball that are surely within it
 
 
 def steps() -> Iterator[float]:
@@ -109,12 +111,129 @@ def steps() -> Iterator[float]:
         bpy.ops.object.delete()
     yield 0.5
     expect(sessions.field.session.target() is None, "a deleted object has no preview")
+    asked.show_field = False
+    yield from surfaces_hide()
+    yield from renders_show_nothing()
+    asked.show_field = True
+    yield 0.5
     with in_view():
         bpy.ops.wm.read_homefile()
     yield 0.5
     expect(not drawing.is_on(), "loading a file ends the preview")
     hybrid_quad.unregister()
     yield 0.3
+
+
+def surfaces_hide() -> Iterator[float]:
+    """What lies behind a surface is not seen: the object's own far side, and other objects in front of it."""
+    asked = sessions.settings()
+    with in_view():
+        sphere = add_sphere(quads=400)
+        activate(sphere)
+    look_at(distance=4.5)
+    asked.show_crosses = asked.show_features = False
+    asked.show_field = True
+    yield from settled()
+    shown = yield from picture(whole_view=True)
+    asked.show_singularities = False
+    hidden = yield from picture(whole_view=True)
+    points = sessions.field.session.result.singular_points
+    eye = np.array(view()[1].spaces[0].region_3d.view_matrix.inverted().translation)
+    facing = (points * (eye - points)).sum(axis=1) / np.linalg.norm(eye - points, axis=1)  # of a unit sphere
+    places = np.array([place_in_view(point) for point in points])
+    seen = [changed(around(shown, place), around(hidden, place)) for place in places]
+    print(f"facing: {facing.round(2)}, drawn: {np.round(seen, 2)}", flush=True)
+    front, back = facing > 0.3, facing < -0.3
+    away = np.array([np.linalg.norm(places[front] - place, axis=1).min() > 6 * BALL for place in places])
+    expect(front.any() and (np.array(seen)[front] == 1).all(), "singularities of the side in front are drawn")
+    expect((back & away).any() and not np.array(seen)[back & away].any(), "those behind it are not")
+
+    asked.show_field, asked.show_crosses, asked.show_features, asked.show_singularities = False, True, True, True
+    with in_view():
+        sphere.hide_set(True)
+        screen = add_grid(cells=1)
+        screen.name = "Screen"
+        screen.location = (-1, 0, 0.5)
+        grid = add_grid(cells=30)
+        activate(grid)
+    region = view()[1].spaces[0].region_3d
+    region.view_rotation, region.view_perspective = Quaternion((1, 0, 0, 0)), "ORTHO"
+    for perspective in ("ORTHO", "PERSP"):
+        region.view_perspective = perspective
+        yield 0.3
+        before = yield from picture(whole_view=True)
+        asked.show_field = True
+        yield from settled()
+        after = yield from picture(whole_view=True)
+        left, right = (between(place_in_view((x, -0.5, 0)), place_in_view((x + 0.5, 0.5, 0))) for x in (-0.8, 0.3))
+        expect(changed(before[right], after[right]) > 0.02, f"{perspective}: crosses are drawn beside another object")
+        expect(changed(before[left], after[left]) == 0, f"{perspective}: and not behind it")
+        asked.show_field = False
+    with in_view():
+        for obj in (grid, screen, sphere):
+            bpy.data.objects.remove(obj)
+    region.view_perspective = "PERSP"
+
+
+def renders_show_nothing() -> Iterator[float]:
+    """Renders are the same to the last bit with the preview and without, final ones and those of the viewport's kind."""
+    asked = sessions.settings()
+    with in_view():
+        obj = activate(add_sphere(quads=400))
+        bpy.ops.object.camera_add(location=(0, 0, 5), rotation=(0, 0, 0))
+        scene = bpy.context.scene
+        scene.camera = bpy.context.object
+        activate(obj)
+    scene.render.resolution_x = scene.render.resolution_y = 200
+    scene.render.resolution_percentage = 100
+    scene.render.engine = "BLENDER_WORKBENCH"
+    without = rendered("without.png")
+    expect(np.array_equal(without[0], rendered("again.png")[0]), "a scene's render is the same each time")
+    asked.show_field = True
+    yield from settled()
+    expect(len(sessions.field.session.result.crosses) > 500, "the preview is there")
+    with_preview = rendered("with.png")
+    expect(np.array_equal(without[0], with_preview[0]), "final renders do not show it")
+    expect(np.array_equal(without[1], with_preview[1]), "nor do those by OpenGL from the camera")
+    expect(np.array_equal(without[2], with_preview[2]), "or from the view")
+    obj.location.x = 0.2
+    expect(changed(without[0], rendered("moved.png")[0]) > 0.02, "which show the scene as it is")
+    obj.location.x = 0.0
+    asked.show_field = False
+    with in_view():
+        bpy.data.objects.remove(obj)
+        bpy.data.objects.remove(scene.camera)
+
+
+def rendered(name: str) -> list[np.ndarray]:
+    """The final render of the scene, and those by OpenGL from the camera and from the view, as arrays."""
+    path = bpy.context.scene.render.filepath = str(Path(bpy.app.tempdir, name))
+    made = []
+    with in_view():
+        bpy.ops.render.render(write_still=True)
+        made.append(pixels_of(path))
+        for from_view in (False, True):
+            bpy.ops.render.opengl(write_still=True, view_context=from_view)
+            made.append(pixels_of(path))
+    return made
+
+
+def place_in_view(point) -> np.ndarray:
+    """Of a point in the scene, in pixels of the 3D view's area."""
+    _, area = view()
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    at = location_3d_to_region_2d(region, area.spaces[0].region_3d, point)
+    return np.array([at.x + region.x - area.x, at.y + region.y - area.y])
+
+
+def around(pixels: np.ndarray, place: np.ndarray) -> np.ndarray:
+    x, y = place.round().astype(int)
+    return pixels[y - BALL : y + BALL + 1, x - BALL : x + BALL + 1]
+
+
+def between(low: np.ndarray, high: np.ndarray) -> tuple[slice, slice]:
+    (left, bottom), (right, top) = low.round().astype(int), high.round().astype(int)
+    return slice(bottom, top), slice(left, right)
 
 
 def add_head() -> bpy.types.Object:
@@ -148,19 +267,25 @@ def settled() -> Iterator[float]:
     yield 0.8
 
 
-def picture() -> Iterator[float]:
-    """The middle of the 3D view as an array."""
+def picture(*, whole_view: bool = False) -> Generator[float, None, np.ndarray]:
+    """The 3D view, or its middle, as an array."""
     _, area = view()
     area.tag_redraw()
     yield 0.6
     path = yield from take_picture("view.png", bpy.app.tempdir)
+    inside = pixels_of(path)[area.y : area.y + area.height, area.x : area.x + area.width]
+    height, width = inside.shape[:2]
+    return inside if whole_view else inside[height // 6 : -height // 6, width // 6 : width * 2 // 3]
+
+
+def pixels_of(path: str) -> np.ndarray:
+    """(height, width, 3) colors of a picture, from its lower left corner on."""
     image = bpy.data.images.load(path)
     width, height = image.size
-    pixels = np.array(image.pixels[:], np.float32).reshape(height, width, 4)[..., :3]
+    pixels = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(pixels)
     bpy.data.images.remove(image)
-    inside = pixels[area.y : area.y + area.height, area.x : area.x + area.width]
-    height, width = inside.shape[:2]
-    return inside[height // 6 : -height // 6, width // 6 : width * 2 // 3]
+    return pixels.reshape(height, width, 4)[..., :3]
 
 
 def changed(first: np.ndarray, second: np.ndarray) -> float:

@@ -102,7 +102,9 @@ class Session(Generic[Result]):
         signature = self._signature(obj)
         if signature != self._seen:
             self._seen = signature
-            self.mark_changed()
+            # The panel has had Blender tell of the object before, and the window may have been drawn since: that time counts.
+            if self._changed_at is None:
+                self.mark_changed()
         is_calm = self._changed_at is not None and (at_once or time.monotonic() - self._changed_at > _CALM)
         if is_calm and obj.mode in _MODES:
             self._begin(obj)

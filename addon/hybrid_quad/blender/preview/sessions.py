@@ -15,7 +15,7 @@ from .drawing import Drawing
 from .field import FieldPreview
 from .limit import LimitPreview
 
-_SECONDS = 0.08  # between two looks at what may have changed
+_SECONDS = 0.04  # between two looks at what may have changed
 _SECONDS_BUSY = 0.02  # and at a worker, as its answer is waited for
 
 # Data whose lines may guide quads, whatever object shows it.
