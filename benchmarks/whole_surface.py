@@ -14,7 +14,12 @@ REACH = 1 / 3  # of a quad's mean edge, beyond its distance
 
 
 def count_inverted(
-    centres: np.ndarray, normals: np.ndarray, sizes: np.ndarray, vertices: np.ndarray, triangles: np.ndarray, _rng: object = None
+    centres: np.ndarray,
+    normals: np.ndarray,
+    sizes: np.ndarray,
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    _rng: object = None,
 ) -> int:
     """Quads that point against the triangle nearest to them and against every one within reach.
 
