@@ -620,6 +620,18 @@ TEST(ConvexPatch, StopsAtFeaturesAndClosesNotches) {
   for (const auto& side : whole->sides) EXPECT_EQ(side.size(), 7u);
 }
 
+TEST(ConvexPatch, NoneBeginsOnAFeatureInside) {
+  const Surface surface(test::flat_grid(10, 10));
+  QuadMesh quads = sheet(6, 6);
+  bind(quads, surface);
+  const auto at = [](int i, int j) { return j * 7 + i; };
+  for (int i = 2; i < 4; ++i) quads.feature_edges.push_back({at(i, 3), at(i + 1, 3), -1});
+  const EditMesh mesh(quads, surface.mesh, surface.features);
+  PatchGrower grower(mesh, 36);
+  for (const int i : {2, 3, 4}) EXPECT_FALSE(grower.start(at(i, 3))) << "patches around it have the feature inside";
+  for (const int v : {at(1, 3), at(3, 2), at(3, 0)}) EXPECT_TRUE(grower.start(v)) << "beside it, and on the boundary";
+}
+
 TEST(ChainArcLengths, OrderSurvivesPointsOutOfPlace) {
   std::vector<Vector3> points;
   for (int i = 0; i <= 20; ++i) points.emplace_back(i, 0, 0);

@@ -8,6 +8,7 @@
 namespace hybrid_quad {
 
 bool PatchGrower::start(int v) {
+  if (lies_on_inner_feature(v)) return false;
   quads_.clear();
   looked_at_ = 0;
   taken_.assign(mesh_.quad_count(), 0);
@@ -22,6 +23,15 @@ bool PatchGrower::grow() {
     for (const int v : mesh_.quad(q))
       if (!take_around(v)) return false;
   return quads_.size() > before.size() && fill_notches();
+}
+
+/// A patch with a feature inside it is none, however far it grows.
+bool PatchGrower::lies_on_inner_feature(int v) const {
+  const std::vector<int>& quads = mesh_.quads_at(v);
+  return std::any_of(quads.begin(), quads.end(), [&](int q) {
+    const int i = mesh_.corner_of(q, v);
+    return mesh_.is_feature(v, mesh_.quad(q)[(i + 1) & 3]) && mesh_.across(q, i) >= 0;
+  });
 }
 
 bool PatchGrower::take(int q) {

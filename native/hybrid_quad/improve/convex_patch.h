@@ -33,6 +33,7 @@ class PatchGrower {
   std::optional<ConvexPatch> patch() const;
 
  private:
+  bool lies_on_inner_feature(int v) const;
   bool take(int q);
   bool take_around(int v);
   bool fill_notches();

@@ -144,6 +144,7 @@ class ComponentRemesher {
       }
       const double extracted = current.count();
       finish(current);
+      if (choice.lacks_only_soundness(current)) split_flawed(current);
       choice.take(std::move(current), extracted);
       if (is_last || choice.is_done() || is_in_vain(extracted, choice)) break;
       search.record(before_rows / choice.lost());
@@ -205,6 +206,14 @@ class ComponentRemesher {
     finishing_.make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
     extraction.missed = missed_counts(plan_.features, extraction.mesh);
     settle_hard_guides(extraction);
+  }
+
+  /// Splits a few sides rather than settling for a number farther from the one asked for.
+  void split_flawed(Extraction& extraction) {
+    if (!plan_.guides.empty()) return;
+    const RunContext context = context_.in_stage("improve", 0.97, 0.97);
+    extraction.repairs.split_sides += clock_.measure("improve", [&] { return finishing_.split_flawed(extraction.mesh, context); });
+    extraction.flawed = static_cast<int>(finishing_.flawed(extraction.mesh, context.threads).size());
   }
 
   void take(Extraction best) {

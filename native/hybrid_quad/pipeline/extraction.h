@@ -59,6 +59,10 @@ class ExtractionChoice {
     is_done_ = (is_near && best_->flawed == 0) || near_with_flaws_ >= enough_;
   }
   bool is_done() const { return is_done_; }
+  /// Whether only flawed quads keep e from being the one to go on with, and all tries from ending.
+  bool lacks_only_soundness(const Extraction& e) const {
+    return best_ && best_->flawed == 0 && e.flawed > 0 && e.missed <= best_->missed && error_of(e.count()) < tolerance_;
+  }
   Extraction best() { return std::move(*best_); }
 
  private:
