@@ -300,7 +300,7 @@ def test_drawn_and_painted_guides_come_together():
 
 
 def _annotations(points: np.ndarray):
-    """Annotations of the scene; a stand-in with the same members where Blender lets no script draw them (4.3 on)."""
+    """Annotations of the scene; a stand-in with the same members where Blender lets no script draw them (4.3 to 5.0)."""
     scene = bpy.context.scene
     groups = getattr(bpy.data, "annotations", bpy.data.grease_pencils)
     data = groups.new("Notes")
@@ -311,8 +311,9 @@ def _annotations(points: np.ndarray):
         stroke.display_mode = "3DSPACE"
         stroke.points.add(len(points))
         stroke.points.foreach_set("co", points.astype(np.float32).ravel())
-        frame.strokes.new().display_mode = "SCREEN"
-        scene.grease_pencil = data
+        on_screen = frame.strokes.new()
+        on_screen.display_mode = "2DSPACE" if hasattr(scene, "annotation") else "SCREEN"
+        setattr(scene, "annotation" if hasattr(scene, "annotation") else "grease_pencil", data)
         return scene, layer
 
     class Points(list):

@@ -241,8 +241,7 @@ def out_of_memory() -> Iterator[float]:
 def memory_limit_reached() -> Iterator[float]:
     """The one of the settings."""
     bpy.data.objects["Sphere"].hybrid_quad.memory_limit = 120
-    yield from start(LONG_RUN_QUADS)
-    run = background_run.current()
+    run = begin(LONG_RUN_QUADS)  # may be there before it tells how far it is
     yield from expect_unchanged_after(lambda: None)
     expect_said("memory limit", in_words(run.worker.stage))
     press("ESC")
@@ -406,16 +405,20 @@ def new_scene() -> Iterator[float]:
 
 def start(quads: int, mode: str = "NEW") -> Iterator[float]:
     """Remeshes the sphere; a long run is waited for until it tells how far it is."""
+    run = begin(quads, mode)
+    began = time.monotonic()
+    while quads == LONG_RUN_QUADS and run.fraction == 0 and time.monotonic() - began < 60:
+        yield 0.05
+    expect(not run.is_finished, "and goes on")
+
+
+def begin(quads: int, mode: str = "NEW") -> background_run.BackgroundRun:
     sphere = bpy.data.objects["Sphere"]
     sphere.hybrid_quad.quads, sphere.hybrid_quad.result_mode = quads, mode
     with in_view():
         activate(sphere)
         expect(bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT") == {"RUNNING_MODAL"}, "a run begins")
-    run = background_run.current()
-    began = time.monotonic()
-    while quads == LONG_RUN_QUADS and run.fraction == 0 and time.monotonic() - began < 60:
-        yield 0.05
-    expect(not run.is_finished, "and goes on")
+    return background_run.current()
 
 
 def pauses() -> Iterator[float]:
