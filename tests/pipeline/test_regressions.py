@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import hybrid_quad
 from fuzz.cases import load_case, make_case
 from fuzz.verdict import verdict_of
 
@@ -14,6 +15,13 @@ SEEDS = range(12)  # of random cases, besides
 @pytest.mark.parametrize("name", sorted(path.name for path in FOLDER.glob("*") if (path / "options.json").exists()))
 def test_what_once_failed(name):
     assert verdict_of(load_case(FOLDER / name), 60.0)["outcome"] in ("valid", "flawed", "refused")
+
+
+def test_few_flawed_quads_are_split_before_all_is_remeshed_anew():
+    case = load_case(FOLDER / "small_parts_shrink_to_points")
+    report = hybrid_quad.remesh(case.vertices, case.faces, quads=2000).report
+    assert (report["flawed_quads"], report["extra_passes"]) == (0, 0)
+    assert report["repairs"]["split_sides"] > 0
 
 
 @pytest.mark.parametrize("seed", SEEDS)

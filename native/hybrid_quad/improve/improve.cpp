@@ -129,6 +129,14 @@ void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasur
   smoother.update_frames(true);
 }
 
+/// Whether to improve again, with what is extracted around `flawed` quads as it is. That helps where few are; many, in
+/// many places, are taken up by splits and by other passes.
+bool is_worth_another_attempt(int flawed, std::size_t quads) {
+  constexpr int kFew = 3;
+  constexpr std::size_t kQuick = 1000;
+  return flawed > 0 && (flawed <= kFew || quads <= kQuick);
+}
+
 double area_of(const QuadMesh& m) {
   double sum = 0;
   for (const auto& q : m.quads)
@@ -155,7 +163,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();
     const bool is_better = attempt == 0 || now.flawed_after < report.flawed_after;
-    const bool go_on = !flawed.empty() && is_better && restoration.give_up_around(improved, flawed);
+    const bool go_on = is_worth_another_attempt(now.flawed_after, improved.quads.size()) && is_better && restoration.give_up_around(improved, flawed);
     if (is_better) {
       best = std::move(improved);
       report = now;

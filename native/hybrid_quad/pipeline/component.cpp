@@ -32,14 +32,19 @@ bool is_only_for_flawed(PassKind kind) { return kind == PassKind::kWithoutFeatur
 
 /// So many flawed quads are not mended by another pass with as few: the surface is thinner than quads are long. More are taken out
 /// again afterwards.
+constexpr int kMany = 12;
 bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
-  constexpr int kMany = 12;
   return best.flawed_quads > kMany && !is_only_for_flawed(settings.kind);
 }
 
-/// Quads extracted in all passes, of those that fit, after which doubtful quads alone are no reason for another pass: where
-/// each takes several tries to come near the asked count, as on broken surfaces, all passes would take minutes.
-constexpr double kMostWork = 12;
+/// Doubtful quads alone are a reason for another pass where they are few, and as long as not too many quads were extracted,
+/// of those that fit: where sheets touch there are about as many after every pass, and where each takes several tries to
+/// come near the asked count, as on broken surfaces, all passes would take minutes.
+bool is_done(const ComponentResult& best, double extracted, double quads) {
+  constexpr int kFewDoubtful = 5;
+  constexpr double kMostWork = 12;
+  return best.flawed_quads == 0 && ((best.doubtful_quads > kFewDoubtful && best.missed_counts == 0) || extracted > kMostWork * quads);
+}
 
 /// Flawed quads, each the worse the more quads were spent; missed counts only where there are none, then doubtful ones.
 double badness(const ComponentResult& result) {
@@ -71,7 +76,7 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
   return out;
 }
 
-/// What no pass puts right. Not where guides follow the quads' edges.
+/// Splits sides of flawed quads. Not where guides follow the quads' edges.
 void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
                   ComponentResult& result, StageClock& clock, const RunContext& context) {
   const Finishing finishing(plan, whole, wishes, options);
@@ -108,7 +113,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       if (fewer_features.given_way == planned.given_way) continue;
     }
     const ComponentPlan& plan = without_features ? fewer_features : extractable.plan;
-    if (any && best.flawed_quads == 0 && extracted > kMostWork * plan.quads) break;
+    if (any && is_done(best, extracted, plan.quads)) break;
     const bool refined = !limits.empty() || settings.quads_factor != 1 || as_needed;
     const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
     const double growth = refined ? std::max(settings.quads_factor, finer.quads / plan.quads) : 1;
@@ -123,6 +128,9 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       flawed.insert(flawed.end(), result.flawed_places.begin(), result.flawed_places.end());
       const ComponentPlan& unrefined = without_features ? fewer_features : planned;
       if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
+      // A few splits change less than other passes, which have other quads everywhere.
+      if (!any && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty())
+        split_flawed(unrefined, whole, wishes, options, result, clock, pass);
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;

@@ -108,6 +108,7 @@ class CountSettling {
   QuadMesh improved(QuadMesh mesh) {
     ++improvements_;
     finishing_.improve(mesh, context_);
+    if (!finishing_.flawed(mesh, context_.threads).empty()) result_.repairs.split_sides += finishing_.split_flawed(mesh, context_);
     finishing_.make_mirrorable(mesh, context_);
     return mesh;
   }
