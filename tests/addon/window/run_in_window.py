@@ -152,11 +152,11 @@ def show_sidebar_tab() -> Iterator[float]:
     region = next(region for region in area.regions if region.type == "UI")
     if hasattr(region, "active_panel_category"):  # from Blender 4.3 on
         for _ in range(20):
+            area.tag_redraw()  # which Blender 4.3 does not do by itself
             try:
                 region.active_panel_category = "Hybrid Quad"
                 break
             except (AttributeError, TypeError):  # before the first drawing
-                area.tag_redraw()
                 yield 0.3
     else:  # the tabs stand along the right edge, ours is the last
         window, _ = view()
@@ -206,8 +206,9 @@ def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
 
 
 def main(test: Iterator[float]) -> None:
-    """Steps through a test, and ends Blender with status 0 or 1."""
+    """Steps through a test, and ends Blender with status 0 or 1. Takes a picture of what the window shows at a failure."""
     bpy.context.preferences.view.show_splash = False  # now: later it is on the screen already
+    test = with_picture_of_failure(test)
 
     def tick() -> float:
         try:
@@ -215,13 +216,21 @@ def main(test: Iterator[float]) -> None:
         except StopIteration:
             status = 0
         except BaseException:
-            traceback.print_exc()
             status = 1
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
 
     bpy.app.timers.register(tick, first_interval=2.0, persistent=True)
+
+
+def with_picture_of_failure(test: Iterator[float]) -> Iterator[float]:
+    try:
+        yield from test
+    except BaseException:
+        traceback.print_exc()
+        yield from take_picture("failed.png")
+        raise
 
 
 if __name__ == "__main__":
