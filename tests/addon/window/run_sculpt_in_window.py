@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, panels
+from hybrid_quad.blender import background_run, panels, task_solving
 from hybrid_quad.blender.part_source import knows_face_sets
 from scenes import activate, points_of
 
@@ -127,7 +127,7 @@ def sculpted_meanwhile() -> Iterator[float]:
 
 def new_scene() -> Iterator[float]:
     """A ball of squares in Sculpt Mode."""
-    background_run.forget_results()
+    task_solving.forget_results()
     with in_view():
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
