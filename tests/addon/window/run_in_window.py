@@ -16,6 +16,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parents[2] / "addon")))
@@ -203,6 +204,16 @@ def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
             return str(path)
         yield 0.2
     raise AssertionError(f"nobody takes pictures for {path.parent}")
+
+
+def pixels_of(path: str) -> np.ndarray:
+    """(height, width, 3) colors of a picture, from its lower left corner on."""
+    image = bpy.data.images.load(path)
+    width, height = image.size
+    pixels = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    return pixels.reshape(height, width, 4)[..., :3]
 
 
 def main(test: Iterator[float]) -> None:
