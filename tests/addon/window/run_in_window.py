@@ -217,7 +217,7 @@ def pixels_of(path: str) -> np.ndarray:
 
 
 def main(test: Iterator[float]) -> None:
-    """Steps through a test, and ends Blender with status 0 or 1. Takes a picture of what the window shows at a failure."""
+    """Steps through a test, and ends Blender with status 0 or 1."""
     bpy.context.preferences.view.show_splash = False  # now: later it is on the screen already
     test = with_picture_of_failure(test)
 
@@ -236,6 +236,7 @@ def main(test: Iterator[float]) -> None:
 
 
 def with_picture_of_failure(test: Iterator[float]) -> Iterator[float]:
+    """The test; should it fail, ``failed.png`` shows what was on the screen."""
     try:
         yield from test
     except BaseException:

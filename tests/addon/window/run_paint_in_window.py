@@ -265,6 +265,7 @@ def drag(
 
 
 def is_seen(color: tuple[float, float, float], pixels: np.ndarray, place: tuple[int, int]) -> bool:
+    """Whether a picture has a color within three pixels of a place."""
     x, y = place
     around = pixels[y - 3 : y + 4, x - 3 : x + 4]
     return bool((np.abs(around - color).max(axis=-1) < 0.1).any())
