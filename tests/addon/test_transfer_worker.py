@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, operators
+from hybrid_quad.blender import background_run, operators, task_solving
 from hybrid_quad.blender.remesh_task import prepare_task
 from hybrid_quad.blender.result_mesh import place_result
 from hybrid_quad.worker.bundle import pack
@@ -34,7 +34,7 @@ def _bits(record):
 def _start_transfer(task):
     background_run.start(task, bpy.context.object).result()
     background_run.forget()
-    background_run._known_data.clear()
+    task_solving._known_data.clear()
     run = background_run.start(task, bpy.context.object)
     assert run.is_known
     assert run.worker.stage == "data_transfer" and "Transferring data" in run.status and 0 < run.fraction < 1

@@ -5,29 +5,25 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable
-from typing import Any
 
 import bpy
 
 from ..core.errors import Cancelled, InputError
 from ..core.remesh import RemeshResult
 from ..core.stage_names import in_words
-from ..worker.interpreter import worker_command
-from ..worker.kinds import Request
-from ..worker.known_results import KnownResults, key_of
 from ..worker.process import WorkerRun
-from ..worker.transfer_request import STAGE, TransferredData
+from ..worker.transfer_request import TransferredData
 from .mesh_source import read_source
 from .own_mesh import OwnMesh
 from .remesh_task import RemeshTask, prepare_in_steps
 from .result_making import ResultMaking
 from .source_track import SourceTrack
 from .steps import Steps
+from .task_solving import TaskSolving
 from .transfer.layers import carry_the_same
 
 _SILENCE = 20.0  # seconds without news after which the user reads about it
 _STEPS = 0.05  # seconds of reading or making a mesh after which no other step is begun before the window answers
-_SOLVED = 0.95  # how much of the whole is done when the quads are there
 
 
 class BackgroundRun:
@@ -54,15 +50,11 @@ class BackgroundRun:
         self.on_forget: Callable[[], object] = lambda: None
         self._task: RemeshTask | None = None
         self._reading: Steps[RemeshTask] | None = None
-        self._solving: WorkerRun[RemeshResult] | None = None
-        self._keys: dict[str, bytes] = {}  # of the requests to worker processes, by kind
-        self._result: RemeshResult | None = None
-        self._transfer: WorkerRun[TransferredData] | None = None
-        self._carried: TransferredData | None = None
+        self._solving: TaskSolving | None = None
         self._making: ResultMaking | None = None
         self._waits = self._is_dropped = False
         if task is not None:
-            self._begin_solving(task)
+            self._solve(task)
         elif mode != "OBJECT" or time.monotonic() < began + _STEPS:
             self._read(began + _STEPS)
 
@@ -80,33 +72,29 @@ class BackgroundRun:
     @property
     def is_known(self) -> bool:
         """Whether a former run's quads are taken, so that none are made."""
-        return self._task is not None and self._solving is None
+        return self._solving is not None and self._solving.is_known
 
     @property
     def worker(self) -> WorkerRun[RemeshResult] | WorkerRun[TransferredData] | None:
         """The process that is at work, or was last; None as long as the task is being read."""
-        return self._transfer or self._solving
+        return None if self._solving is None else self._solving.worker
 
     @property
     def fraction(self) -> float:
         """How much is done, 0 to 1."""
         if self.is_finished:
             return 1.0
-        if self._transfer is None:
-            return 0.0 if self._solving is None else _SOLVED * self._solving.fraction
-        return _SOLVED + (1 - _SOLVED) * self._transfer.fraction
+        return 0.0 if self._solving is None else self._solving.fraction
 
     @property
     def is_finished(self) -> bool:
         """Whether nothing goes on any more, for better or worse."""
-        if self._is_between or self.is_reading:
-            return False
-        return self.worker is None or self.worker.is_finished
+        return not self.is_reading and (self._solving is None or self._solving.is_finished)
 
     @property
     def has_result(self) -> bool:
         """Whether all has ended well."""
-        return self._carried is not None or (self._transfer is not None and self._transfer.has_result)
+        return self._solving is not None and self._solving.has_result
 
     def poll(self) -> bool:
         """Looks how far the run is, without waiting, and does what is next; whether it has ended.
@@ -120,10 +108,8 @@ class BackgroundRun:
         """
         if self.is_reading:
             self._read(time.monotonic() + _STEPS)
-        elif self._is_between:
-            self._go_on()
-        elif self.worker is not None:
-            self.worker.poll()
+        elif self._solving is not None:
+            self._solving.poll()
         return self.is_finished
 
     def cancel(self) -> None:
@@ -133,14 +119,15 @@ class BackgroundRun:
             self._reading.close()
         if self._making is not None:
             self._making.cancel()
-        if self.worker is not None:
-            self.worker.cancel()
+        if self._solving is not None:
+            self._solving.cancel()
 
     def wait(self) -> None:
         """Returns when the run has ended."""
-        while not self.poll():
-            if self.worker is not None:
-                self.worker.wait()
+        while self.is_reading:
+            self.poll()
+        if self._solving is not None:
+            self._solving.wait()
 
     def build(self, obj: bpy.types.Object) -> bool:
         """Makes the result's mesh for a while, with nothing of the scene changed; whether there is no more to do before it is placed.
@@ -162,10 +149,11 @@ class BackgroundRun:
         """Whether the result's mesh is being made."""
         return self._making is not None
 
-    @property
-    def _is_between(self) -> bool:
-        is_solved = self._solving is not None and self._solving.has_result
-        return is_solved and self._transfer is None and self._carried is None and not self._is_dropped
+    def _solved(self) -> TaskSolving:
+        self.wait()
+        if self._solving is None:
+            raise Cancelled("cancelled before it began")
+        return self._solving
 
     def _read(self, until: float) -> None:
         """Reads up to a time, but at least one step; begins to solve the task when it is there."""
@@ -181,38 +169,14 @@ class BackgroundRun:
             while time.monotonic() < until:
                 next(self._reading)
         except StopIteration as end:
-            self._begin_solving(end.value)
+            self._solve(end.value)
         except BaseException:
             self._is_dropped = True
             raise
 
-    def _go_on(self) -> None:
-        """What comes between the quads and what they take along, in two steps."""
-        assert self._solving is not None
-        if self._result is None:
-            self._result = self._solving.result()
-            _known_quads.keep(self._keys["remesh"], self._result)
-        else:
-            self._begin_transfer(self._result)
-
-    def _begin_solving(self, task: RemeshTask) -> None:
-        """A worker solves the task, unless a former run has done so."""
-        self._task, request = task, task.request()
-        self._keys["remesh"] = key_of(request)
-        known = _known_quads.find(self._keys["remesh"])
-        if known is None:
-            self._solving = _worker(request, "start")
-        else:
-            self._result = known
-            self._begin_transfer(known)
-
-    def _begin_transfer(self, result: RemeshResult) -> None:
-        """A worker computes what the result takes along, unless a former run has done so."""
-        request = self.task.transfer_request(result)
-        self._keys["transfer"] = key_of(request)
-        self._carried = _known_data.find(self._keys["transfer"])
-        if self._carried is None:
-            self._transfer = _worker(request, STAGE)
+    def _solve(self, task: RemeshTask) -> None:
+        self._task = task
+        self._solving = TaskSolving(task)
 
     @property
     def status(self) -> str:
@@ -232,22 +196,11 @@ class BackgroundRun:
 
     def result(self) -> RemeshResult:
         """The run's result; waits for the whole run, and raises what that raised, see :meth:`.process.WorkerRun.result`."""
-        self.carried()
-        assert self._result is not None
-        return self._result
+        return self._solved().result()
 
     def carried(self) -> TransferredData:
         """What the result takes along, as :meth:`result`."""
-        self.wait()
-        if self._carried is not None:
-            return self._carried
-        if self._transfer is None:
-            if self._solving is not None:
-                self._solving.result()  # which raises, but for one that was ended between the two halves
-            raise Cancelled(f"cancelled before {in_words(STAGE)}")
-        self._carried = self._transfer.result()
-        _known_data.keep(self._keys["transfer"], self._carried)
-        return self._carried
+        return self._solved().carried()
 
     def find_source(self) -> bpy.types.Object:
         """The object that the result is for.
@@ -293,29 +246,12 @@ class BackgroundRun:
             )
 
 
-def _worker(request: Request[Any], first_stage: str) -> WorkerRun[Any]:
-    return WorkerRun(
-        request,
-        temporary_folder=bpy.app.tempdir or None,
-        command=worker_command(host=bpy.app.binary_path),
-        first_stage=first_stage,
-    )
-
-
 _current: BackgroundRun | None = None
-_known_quads: KnownResults[RemeshResult] = KnownResults()
-_known_data: KnownResults[TransferredData] = KnownResults()
 
 
 def current() -> BackgroundRun | None:
     """The run that goes on, if any: Blender's window serves one at a time."""
     return _current
-
-
-def forget_results() -> None:
-    """Lets go of the results of former runs."""
-    _known_quads.clear()
-    _known_data.clear()
 
 
 def start(task: RemeshTask | None, obj: bpy.types.Object, mode: str = "OBJECT") -> BackgroundRun:

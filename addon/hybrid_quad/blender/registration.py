@@ -26,6 +26,7 @@ from . import (
     repair_operators,
     run_display,
     selected_objects,
+    task_solving,
 )
 from .painting import registration as painting
 from .preview import limit, sessions
@@ -81,7 +82,7 @@ def unregister() -> None:
     """Safe to call where nothing is registered."""
     atexit.unregister(unregister)
     background_run.forget()
-    background_run.forget_results()
+    task_solving.forget_results()
     sessions.unregister()
     own_mesh.unregister()
     command.unregister()

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
@@ -29,11 +30,12 @@ from hybrid_quad.blender.painting.stroke_view import TOOL
 from hybrid_quad.blender.preview import sessions
 
 # Pixels from the top of the sidebar down to the middles of what is clicked on.
-IS_NEW = bpy.app.version >= (4, 0)
 QUADS_FIELD = 69
 REMESH_BUTTON = 125
 PREVIEW_SWITCH = 532
-TOOL_BUTTON = 410 if IS_NEW else 378  # of the toolbar
+# And from the top of the toolbar.
+FIRST_TOOL = 25
+TOOL_STEP, TOOL_GAP = 36, 5  # from tool to tool, and more where a separator is
 PREVIEW_LEFT = 51  # from the sidebar's left
 PATIENCE = 90
 LONG_RUN_QUADS = 150_000
@@ -154,7 +156,11 @@ def choose_tool() -> Iterator[float]:
     """Clicks on the comb, the last in the toolbar. (Blender 3.4 dies of simulated clicks on its own tools.)"""
     window, area = view()
     region = next(region for region in area.regions if region.type == "TOOLS")
-    x, y = region.x + 25, region.y + region.height - TOOL_BUTTON
+    with in_view():
+        tools = list(VIEW3D_PT_tools_active.tools_from_context(bpy.context, "OBJECT"))
+    gaps = tools.count(None)  # other Blenders have other tools
+    down = FIRST_TOOL + TOOL_STEP * (len(tools) - gaps - 1) + TOOL_GAP * gaps
+    x, y = region.x + 25, region.y + region.height - down
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
     yield 0.3
     for value in ("PRESS", "RELEASE"):

@@ -16,6 +16,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, os.environ.get("HQ_ADDON_PARENT", str(HERE.parents[2] / "addon")))
@@ -152,11 +153,11 @@ def show_sidebar_tab() -> Iterator[float]:
     region = next(region for region in area.regions if region.type == "UI")
     if hasattr(region, "active_panel_category"):  # from Blender 4.3 on
         for _ in range(20):
+            area.tag_redraw()  # which Blender 4.3 does not do by itself
             try:
                 region.active_panel_category = "Hybrid Quad"
                 break
             except (AttributeError, TypeError):  # before the first drawing
-                area.tag_redraw()
                 yield 0.3
     else:  # the tabs stand along the right edge, ours is the last
         window, _ = view()
@@ -205,9 +206,20 @@ def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
     raise AssertionError(f"nobody takes pictures for {path.parent}")
 
 
+def pixels_of(path: str) -> np.ndarray:
+    """(height, width, 3) colors of a picture, from its lower left corner on."""
+    image = bpy.data.images.load(path)
+    width, height = image.size
+    pixels = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    return pixels.reshape(height, width, 4)[..., :3]
+
+
 def main(test: Iterator[float]) -> None:
     """Steps through a test, and ends Blender with status 0 or 1."""
     bpy.context.preferences.view.show_splash = False  # now: later it is on the screen already
+    test = with_picture_of_failure(test)
 
     def tick() -> float:
         try:
@@ -215,13 +227,22 @@ def main(test: Iterator[float]) -> None:
         except StopIteration:
             status = 0
         except BaseException:
-            traceback.print_exc()
             status = 1
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
 
     bpy.app.timers.register(tick, first_interval=2.0, persistent=True)
+
+
+def with_picture_of_failure(test: Iterator[float]) -> Iterator[float]:
+    """The test; should it fail, ``failed.png`` shows what was on the screen."""
+    try:
+        yield from test
+    except BaseException:
+        traceback.print_exc()
+        yield from take_picture("failed.png")
+        raise
 
 
 if __name__ == "__main__":

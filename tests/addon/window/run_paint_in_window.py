@@ -21,7 +21,7 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import expect, in_view, main, show_sidebar_tab, take_picture, view
+from run_in_window import expect, in_view, main, pixels_of, show_sidebar_tab, take_picture, view
 
 import hybrid_quad
 from hybrid_quad.blender.guide_attributes import DENSITY_ATTRIBUTE, GUIDE_ATTRIBUTE
@@ -34,6 +34,7 @@ MODEL = Path(__file__).resolve().parents[2] / "data" / "meshes" / "c3d_spot_tria
 STROKE = np.stack([np.linspace(-0.3, 0.55, 31), -0.15 + 0.12 * np.sin(np.linspace(-1.3, 1.5, 31))], axis=1)
 ALONG = np.stack([np.linspace(-0.3, 0.55, 20), np.full(20, -0.12)], axis=1)
 ACROSS = np.stack([np.full(20, 0.25), np.linspace(-0.4, 0.1, 20)], axis=1)
+LOOP = (1.0, 0.65, 0.05)  # color of loops
 NEAR = 0.06  # edges as near as this to the stroke are to follow it
 
 
@@ -115,7 +116,7 @@ def steps() -> Iterator[float]:
 
     print("-- a loop and a ring", flush=True)
     brush().kind = "LOOP"
-    yield from drag(ALONG, picture="paint_loop_stroke.png")
+    yield from drag(ALONG, picture="paint_loop_stroke.png", color=LOOP)
     expect(len(model().children) == 1, "a line is a child of the mesh")
     brush().kind = "RING"
     yield from drag(ACROSS)
@@ -233,7 +234,14 @@ def click(x: int, y: int) -> Iterator[float]:
         yield 0.3
 
 
-def drag(places: np.ndarray, picture: str = "", cancel: bool = False, **keys: bool) -> Iterator[float]:
+def drag(
+    places: np.ndarray,
+    picture: str = "",
+    color: tuple[float, float, float] | None = None,
+    cancel: bool = False,
+    **keys: bool,
+) -> Iterator[float]:
+    """Moves the mouse with its button down; half way takes a picture, in which the line is to be seen in its color."""
     window, _ = view()
     yield from move_to(places[0])
     way = [pixel(place) for place in places[::3]]
@@ -244,13 +252,23 @@ def drag(places: np.ndarray, picture: str = "", cancel: bool = False, **keys: bo
         yield 0.03
         if picture and index == len(way) // 2:
             yield 0.5
-            yield from take_picture(picture)
+            path = yield from take_picture(picture, bpy.app.tempdir)
+            if color is not None:
+                drawn = [is_seen(color, pixels_of(path), place) for place in way[: index + 1]]
+                expect(len(drawn) > 3 and all(drawn), f"a line is seen as it is drawn: {drawn}")
     if cancel:
         window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
         window.event_simulate(type="ESC", value="RELEASE", x=x, y=y)
         yield 0.3
     window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=x, y=y, **keys)
     yield 0.5
+
+
+def is_seen(color: tuple[float, float, float], pixels: np.ndarray, place: tuple[int, int]) -> bool:
+    """Whether a picture has a color within three pixels of a place."""
+    x, y = place
+    around = pixels[y - 3 : y + 4, x - 3 : x + 4]
+    return bool((np.abs(around - color).max(axis=-1) < 0.1).any())
 
 
 def guides() -> np.ndarray:

@@ -21,7 +21,7 @@ from run_in_window import drawn, expect, in_view, main, press, show_sidebar_tab,
 from run_worker_in_window import expect_said, said
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, panels
+from hybrid_quad.blender import background_run, panels, task_solving
 from scenes import activate, add_grid, add_sphere
 
 CELLS, FACES = 16, 256
@@ -152,7 +152,7 @@ def until_all_finished() -> Iterator[float]:
 
 def new_scene() -> Iterator[float]:
     """A grid, and a sphere."""
-    background_run.forget_results()
+    task_solving.forget_results()
     with in_view():
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

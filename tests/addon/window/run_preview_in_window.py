@@ -20,7 +20,7 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import expect, in_view, main, show_sidebar_tab, take_picture, view, watch_drawing
+from run_in_window import expect, in_view, main, pixels_of, show_sidebar_tab, take_picture, view, watch_drawing
 
 import hybrid_quad
 from hybrid_quad.blender import panels as main_panels
@@ -276,16 +276,6 @@ def picture(*, whole_view: bool = False) -> Generator[float, None, np.ndarray]:
     inside = pixels_of(path)[area.y : area.y + area.height, area.x : area.x + area.width]
     height, width = inside.shape[:2]
     return inside if whole_view else inside[height // 6 : -height // 6, width // 6 : width * 2 // 3]
-
-
-def pixels_of(path: str) -> np.ndarray:
-    """(height, width, 3) colors of a picture, from its lower left corner on."""
-    image = bpy.data.images.load(path)
-    width, height = image.size
-    pixels = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels.reshape(height, width, 4)[..., :3]
 
 
 def changed(first: np.ndarray, second: np.ndarray) -> float:

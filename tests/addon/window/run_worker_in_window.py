@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
 
 import hybrid_quad
-from hybrid_quad.blender import background_run, operators
+from hybrid_quad.blender import background_run, operators, task_solving
 from hybrid_quad.core.stage_names import in_words
 from hybrid_quad.worker import process
 from scenes import activate, add_cube, add_sphere
@@ -219,9 +219,6 @@ def hanging_for_good() -> Iterator[float]:
 
 def out_of_memory() -> Iterator[float]:
     """The system gives the worker no more."""
-    if not Path("/proc/self/statm").exists():
-        print("left out without /proc: a worker for which there is no memory")
-        return
     import resource
 
     yield from start(LONG_RUN_QUADS)
@@ -388,7 +385,7 @@ def another_file_loaded() -> Iterator[float]:
 
 def new_scene() -> Iterator[float]:
     """A cube, and a sphere that is active."""
-    background_run.forget_results()
+    task_solving.forget_results()
     with in_view():
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

@@ -218,7 +218,7 @@ def _density_batch(surface: BrushSurface, values: FloatArray, points: Any, _line
     colors = np.empty((len(values), 4))
     colors[:, :3] = np.where((values > 0)[:, None], _DENSER, _COARSER)
     colors[:, 3] = 0.75 * np.sqrt(amount)
-    content = {"pos": np.asarray(points, np.float32), "color": colors.astype(np.float32)}
+    content = {"pos": np.ascontiguousarray(points, np.float32), "color": colors.astype(np.float32)}
     return batch_for_shader(_shader("SMOOTH_COLOR"), "TRIS", content, indices=np.ascontiguousarray(shown, np.int32))
 
 
@@ -235,7 +235,8 @@ def _draw_lines(obj: bpy.types.Object) -> None:
         if not pieces:
             continue
         shader = _shader("POLYLINE_UNIFORM_COLOR")
-        batch = batch_for_shader(shader, "LINES", {"pos": np.concatenate(pieces).astype(np.float32)})
+        # Point after point: Blender takes the memory as it lies, and that of a stroke lies coordinate after coordinate.
+        batch = batch_for_shader(shader, "LINES", {"pos": np.ascontiguousarray(np.concatenate(pieces), np.float32)})
         shader.bind()
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         shader.uniform_float("lineWidth", 3.0 * bpy.context.preferences.system.pixel_size)
