@@ -38,8 +38,8 @@ int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& co
   return moves;
 }
 
-Workpiece workpiece_of(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
-                       const SurfaceIndex& index, const ImproveOptions& options) {
+Workpiece workpiece_of(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options) {
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   return piece;
@@ -116,7 +116,8 @@ int flawed_in(const EditMesh& mesh, const FlawMeasure& measure) {
 }
 
 /// Smooths everything, unless that brings flaws.
-void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, int sweeps, const RunContext& context) {
+void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasure& measure, int sweeps,
+                          const RunContext& context) {
   const int before = flawed_in(piece.mesh, measure);
   const std::vector<Vector3> positions = piece.mesh.positions;
   const std::vector<int> faces = piece.face;
@@ -146,9 +147,8 @@ double area_of(const QuadMesh& m) {
 
 }  // namespace
 
-ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
-                            const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
-                            const SurfaceIndex* whole) {
+ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                            const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
   constexpr int kAttempts = 5;
   const SurfaceIndex& judged = whole ? *whole : index;
@@ -163,7 +163,8 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     now.flawed_after = static_cast<int>(flawed.size());
     now.restored_quads = restoration.locked_count();
     const bool is_better = attempt == 0 || now.flawed_after < report.flawed_after;
-    const bool go_on = is_worth_another_attempt(now.flawed_after, improved.quads.size()) && is_better && restoration.give_up_around(improved, flawed);
+    const bool go_on = is_worth_another_attempt(now.flawed_after, improved.quads.size()) && is_better &&
+                       restoration.give_up_around(improved, flawed);
     if (is_better) {
       best = std::move(improved);
       report = now;

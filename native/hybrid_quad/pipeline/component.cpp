@@ -43,7 +43,8 @@ bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
 bool is_done(const ComponentResult& best, double extracted, double quads) {
   constexpr int kFewDoubtful = 5;
   constexpr double kMostWork = 12;
-  return best.flawed_quads == 0 && ((best.doubtful_quads > kFewDoubtful && best.missed_counts == 0) || extracted > kMostWork * quads);
+  return best.flawed_quads == 0 &&
+         ((best.doubtful_quads > kFewDoubtful && best.missed_counts == 0) || extracted > kMostWork * quads);
 }
 
 /// Flawed quads, each the worse the more quads were spent; missed counts only where there are none, then doubtful ones.
@@ -60,7 +61,7 @@ bool has_inner_features(const ComponentPlan& plan) {
 
 struct Extractable {
   ComponentPlan plan;
-  bool are_few = false;   ///< quads to be taken out afterwards
+  bool are_few = false;  ///< quads to be taken out afterwards
   bool is_rough = false;  ///< it is a plan for more quads than there are to be
 };
 
@@ -88,8 +89,8 @@ void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wi
 
 /// Passes until one has no flawed quads; the best of them.
 ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
-                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget,
-                                 StageClock& clock, const RunContext& context) {
+                                 const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
+                                 const RunContext& context) {
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
   const Extractable extractable = extractable_plan(planned, count);
   const bool are_few = extractable.are_few, is_rough = extractable.is_rough;
@@ -99,6 +100,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   std::string broken;
   constexpr int kWorse = 2;  // times as many flawed with shorter edges: with still shorter ones there are more
   bool any = false;
+  std::size_t split_in_vain = 0;  // quads of the best, where splits did not put it right
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
   std::vector<LengthLimit> limits;
@@ -129,16 +131,22 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       const ComponentPlan& unrefined = without_features ? fewer_features : planned;
       if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
       // A few splits change less than other passes, which have other quads everywhere.
-      if (!any && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty())
+      std::size_t in_vain = 0;
+      if (!any && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
         split_flawed(unrefined, whole, wishes, options, result, clock, pass);
+        if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
+      }
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
       result.passes = best.passes + 1;
       extracted += result.extracted_quads;
-      if (any) budget.left -= result.work;
-      else first_work = result.work;
+      if (any)
+        budget.left -= result.work;
+      else
+        first_work = result.work;
       if (!any || badness(result) < badness(best)) {
         best = std::move(result);
         plan_of_best = &unrefined;
+        split_in_vain = in_vain;
       } else {
         best.passes = result.passes;
       }
@@ -153,7 +161,8 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
-  if (best.flawed_quads > 0 && planned.guides.empty()) split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
+  if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain && planned.guides.empty())
+    split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
   return best;
 }

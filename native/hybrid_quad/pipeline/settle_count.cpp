@@ -23,9 +23,10 @@ constexpr int kMostImprovements = 6;
 
 class CountSettling {
  public:
-  CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole, ComponentResult& result,
-                const RunContext& context)
-      : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context), now_(measured(result.mesh)) {
+  CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole,
+                ComponentResult& result, const RunContext& context)
+      : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context),
+        now_(measured(result.mesh)) {
     for (const FeatureCurve& curve : plan.features.curves) counted_.push_back(curve.asked_count > 0);
   }
 
@@ -55,8 +56,9 @@ class CountSettling {
 
   Measured measured(const QuadMesh& mesh) const {
     const int quads = static_cast<int>(mesh.quads.size());
-    return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()), static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()),
-            missed_counts(plan_.features, mesh), std::abs(std::log(quads / wanted_))};
+    return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()),
+            static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()), missed_counts(plan_.features, mesh),
+            std::abs(std::log(quads / wanted_))};
   }
 
   bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
@@ -66,7 +68,8 @@ class CountSettling {
   bool take(QuadMesh mesh, double most_error) {
     if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
     const Measured then = measured(mesh);
-    if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed) return false;
+    if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed)
+      return false;
     now_ = then;
     result_.mesh = std::move(mesh);
     return true;
@@ -108,7 +111,8 @@ class CountSettling {
   QuadMesh improved(QuadMesh mesh) {
     ++improvements_;
     finishing_.improve(mesh, context_);
-    if (!finishing_.flawed(mesh, context_.threads).empty()) result_.repairs.split_sides += finishing_.split_flawed(mesh, context_);
+    if (!finishing_.flawed(mesh, context_.threads).empty())
+      result_.repairs.split_sides += finishing_.split_flawed(mesh, context_);
     finishing_.make_mirrorable(mesh, context_);
     return mesh;
   }
@@ -129,8 +133,8 @@ class CountSettling {
 
 }  // namespace
 
-void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
-                  ComponentResult& result, StageClock& clock, const RunContext& context) {
+void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
+                  const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
   if (!options.improve || !plan.guides.empty() || wishes.most_stretch > 1) return;
   const Finishing finishing(plan, whole, wishes, options);
   const RunContext stage = context.in_stage("count", 0.97, 0.97);
