@@ -41,7 +41,7 @@ def choice_of(obj: bpy.types.Object) -> PartChoice | None:
     if whole.symmetry or whole.fit_limit_surface:
         raise InputError(
             "needs_whole_surface",
-            "Mirror and Fit Subdivision Surface need the whole surface: switch them off to remesh a part of it",
+            "Mirror and Fit Limit Surface need the whole surface: switch them off to remesh a part of it",
         )
     with readable_mesh(obj) as mesh:
         faces = _REGIONS[settings.region](mesh, settings)

@@ -95,14 +95,14 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         unit="LENGTH",
     )
     narrow_quads: bpy.props.IntProperty(
-        name="Across Narrow Parts",
+        name="Narrow Parts",
         description="Rows of quads that strips between two kept edges get at least, however narrow",
         default=NUMBERS["narrow_quads"],
         min=1,
         max=2,
     )
     fit_limit_surface: bpy.props.BoolProperty(
-        name="Fit Subdivision Surface",
+        name="Fit Limit Surface",
         description="Move vertices so that a Subdivision Surface modifier puts the surface where it was. Kept edges and corners "
         "get creases",
         default=False,
