@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .core.remesh import RemeshResult, remesh
     from .core.remesh_part import PartRemesh, remesh_part
     from .core.repair import Repaired, repair
+    from .core.stage_cache import StageCache
     from .core.strokes import Stroke, guides_from_strokes
     from .core.subdivision import Subdivided, subdivide, surface_distances
 
@@ -43,6 +44,7 @@ __all__ = [
     "RemeshOptions",
     "RemeshResult",
     "Repaired",
+    "StageCache",
     "Stroke",
     "Subdivided",
     "check",
@@ -71,6 +73,7 @@ _MODULE_OF = {
     "remesh_part": "remesh_part",
     "Repaired": "repair",
     "repair": "repair",
+    "StageCache": "stage_cache",
     "Stroke": "strokes",
     "guides_from_strokes": "strokes",
     "Subdivided": "subdivision",

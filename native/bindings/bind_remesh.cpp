@@ -11,6 +11,7 @@
 #include "defect_list.h"
 #include "hybrid_quad/pipeline/preview.h"
 #include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/pipeline/stage_cache.h"
 #include "polygon_arrays.h"
 
 namespace py = pybind11;
@@ -310,6 +311,9 @@ Preview preview_without_gil(const PolygonSoup& soup, const RemeshOptions& option
 }  // namespace
 
 void bind_remesh(py::module_& module, const ErrorTypes& errors) {
+  py::class_<StageCache>(module, "StageCache", "What the first stages of a caller's latest run gave.")
+      .def(py::init<>())
+      .def_property_readonly("recalled", &StageCache::recalled, "Names of the stages of the latest run that were known.");
   module.def("default_options", &default_options, "Defaults of the core's options, as keyword arguments of remesh.");
   module.def(
       "remesh",
@@ -322,7 +326,8 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
                bool fit_limit_surface, const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
                double memory_limit, py::object progress,
-               py::object cancel, py::object snapshot, const std::string& stop_after) {
+               py::object cancel, py::object snapshot, const std::string& stop_after, StageCache* cache,
+               const StageCache::Keys& cache_keys) {
         const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
         RemeshOptions options;
         options.quads = quads;
@@ -347,15 +352,18 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
         const StopAfter stop = stop_named(stop_after);
+        if (cache != nullptr) cache->begin(cache_keys);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), {time_limit, memory_limit});
+        RunContext context = bridge.context(seed, threads);
+        context.cache = cache;
         try {
           if (stop != StopAfter::kNothing) {
-            const Preview found = preview_without_gil(soup, options, stop == StopAfter::kQuads, bridge.context(seed, threads));
+            const Preview found = preview_without_gil(soup, options, stop == StopAfter::kQuads, context);
             bridge.rethrow_pending();
             bridge.finish("done");
             return dict_of_preview(found);
           }
-          const RemeshResult result = run_without_gil(soup, options, bridge.context(seed, threads));
+          const RemeshResult result = run_without_gil(soup, options, context);
           bridge.rethrow_pending();
           bridge.finish("done");
           return dict_of_result(result);
@@ -378,9 +386,12 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("fit_limit_surface"), py::arg("symmetry"), py::arg("solver"),
       py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("progress").none(true),
-      py::arg("cancel").none(true), py::arg("snapshot").none(true), py::arg("stop_after") = "",
+      py::arg("cancel").none(true), py::arg("snapshot").none(true), py::arg("stop_after") = "", py::arg("cache").none(true) = py::none(),
+      py::arg("cache_keys") = StageCache::Keys{},
       "Quad mesh, feature edges and report of one run, as a dict. With stop_after 'field' or 'quads' only what the stages up to\n"
-      "there say: frames, singularities, features, and the quads of one try before they are improved.");
+      "there say: frames, singularities, features, and the quads of one try before they are improved. With a cache, which no\n"
+      "other run may use at the same time, stages are not done again that go by what its last run went by: `cache_keys` are\n"
+      "digests of the surface, of all but directions, and of all.");
 }
 
 }  // namespace hybrid_quad

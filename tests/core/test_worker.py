@@ -135,6 +135,46 @@ def test_a_seat_waits_for_its_request_and_can_be_left(start, tmp_path):
     assert not unused.is_there() and is_gone(unused.process.pid)
 
 
+def test_a_worker_that_stays_answers_one_request_after_the_other(start, tmp_path):
+    seat = WorkerSeat(stays=True, temporary_folder=str(tmp_path))
+    surface = wave(quads=300, sharp_angle=None)
+    along = np.tile([1.0, 0.5, 0.0], (len(surface.vertices), 1))
+    for run in (surface, dataclasses.replace(surface, guides=along), surface, wave(quads=200)):
+        request = PreviewRequest(run, with_quads=True)
+        found, expected = start(request, seat=seat).result(), request.solve()
+        for name in ("crosses", "cross_sizes", "features", "quads", "guides", "singular_points"):
+            assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
+        assert seat.is_there()
+    assert seat.requests == 4 and not list(seat.folder.glob("*.npz"))
+    seat.leave()
+
+
+def test_what_is_abandoned_does_not_end_a_worker_that_stays(start, tmp_path):
+    seat = WorkerSeat(stays=True, temporary_folder=str(tmp_path))
+    long = start(wave(quads=500_000), seat=seat)
+    wait_until(lambda: long.poll() or long.fraction > 0)
+    long.abandon()
+    with pytest.raises(Cancelled):
+        long.result()
+    unseen = start(wave(quads=200), seat=seat)
+    time.sleep(1)
+    unseen.abandon()  # which it has ended long ago
+    run = start(wave(quads=300), seat=seat)
+    assert len(run.result().quads) > 200 and run.process_id == long.process_id
+    assert len(start(wave(quads=200), seat=seat).result().quads) < 300
+    wait_until(lambda: not list(seat.folder.glob("*.npz")) and not list(seat.folder.glob("stop*")))
+    seat.leave()
+
+
+def test_a_refusal_ends_even_a_worker_that_stays(start, tmp_path):
+    seat = WorkerSeat(stays=True, temporary_folder=str(tmp_path))
+    broken = wave()
+    broken.vertices[3] = np.nan
+    with pytest.raises(InputError):
+        start(broken, seat=seat).result()
+    assert not seat.is_there()
+
+
 def solve(request):
     return request.solve()
 

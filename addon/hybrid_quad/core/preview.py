@@ -16,6 +16,7 @@ from .mesh_arrays import FacesLike, FloatArray, IntArray
 from .mesh_objects import MeshLike, vertices_and_faces
 from .options import RemeshOptions
 from .remesh import CancelCallback, ProgressCallback, native_arguments
+from .stage_cache import StageCache, lent_by
 from .strokes import Stroke
 
 _ARM = 0.42  # of a quad's edge on either side of a cross: those of neighbours do not touch
@@ -94,6 +95,7 @@ def preview(
     frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
+    cache: StageCache | None = None,
 ) -> Preview:
     """Solves for the field that :func:`hybrid_quad.remesh` would follow, in a fraction of its time.
 
@@ -109,6 +111,8 @@ def preview(
         Go on to the quads of one try, before they are improved. Takes about twice the time.
     sharp_edges, curve_counts, guides, strokes, stroke_radius, density, frames, progress, cancel
         As :func:`hybrid_quad.remesh` takes them.
+    cache : StageCache, optional
+        Of earlier runs: what is the same in this one is not solved for again.
 
     Returns
     -------
@@ -131,7 +135,8 @@ def preview(
         frames=frames,
     )
     stop = "quads" if with_quads else "field"
-    found = native.load().remesh(**asked, progress=progress, cancel=cancel, snapshot=None, stop_after=stop)
+    with lent_by(cache, asked) as known:
+        found = native.load().remesh(**asked, **known, progress=progress, cancel=cancel, snapshot=None, stop_after=stop)
     if center is not None:
         for name in ("points", "singular_points", "feature_lines", "quad_vertices"):
             found[name] += center

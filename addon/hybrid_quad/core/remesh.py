@@ -29,6 +29,7 @@ from .mesh_arrays import (
 from .mesh_objects import MeshLike, meshio_of_quads, trimesh_of_quads, vertices_and_faces
 from .options import MOST_QUADS, RemeshOptions
 from .snapshots import Snapshot, SnapshotFolder
+from .stage_cache import StageCache, lent_by
 from .strokes import (
     RADIUS_IN_EDGES,
     Stroke,
@@ -117,6 +118,7 @@ def remesh(
     memory_limit: float | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
+    cache: StageCache | None = None,
     dump_stages: PathLike | None = None,
     on_snapshot: SnapshotCallback | None = None,
 ) -> RemeshResult:
@@ -199,6 +201,8 @@ def remesh(
         Called at most twenty times a second; `fraction` of the whole run never falls.
     cancel : callable() -> bool, optional
         Polled up to twenty times a second; a true answer stops the run within a second.
+    cache : StageCache, optional
+        Of earlier runs on this surface: stages that depend on nothing that has changed are not done again. The result is the same.
     dump_stages : path, optional
         Folder that receives a ``.vtu`` file of every stage, which ParaView opens. Needs ``meshio``.
     on_snapshot : callable(Snapshot), optional
@@ -251,6 +255,7 @@ def remesh(
         frames=frames,
         progress=progress,
         cancel=cancel,
+        cache=cache,
         dump_stages=dump_stages,
         on_snapshot=on_snapshot,
     )
@@ -270,6 +275,7 @@ def remesh_with_options(
     frames: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
     cancel: CancelCallback | None = None,
+    cache: StageCache | None = None,
     dump_stages: PathLike | None = None,
     on_snapshot: SnapshotCallback | None = None,
 ) -> RemeshResult:
@@ -289,7 +295,8 @@ def remesh_with_options(
         frames=frames,
     )
     snapshot = _snapshot_receiver(dump_stages, on_snapshot)
-    result = native.load().remesh(**asked, progress=progress, cancel=cancel, snapshot=snapshot)
+    with lent_by(cache, asked) as known:
+        result = native.load().remesh(**asked, **known, progress=progress, cancel=cancel, snapshot=snapshot)
     if center is not None:
         result["vertices"] += center
     result["report"] = report.finished(result["report"], options, __version__)

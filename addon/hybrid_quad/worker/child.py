@@ -41,7 +41,7 @@ def main() -> None:
             run = importlib.import_module("hybrid_quad.worker.run")
             # From here on, as libraries that are being loaded on Windows may wait for what a blocked thread holds.
             threading.Thread(target=_end_with, args=(control, order["folder"]), daemon=True).start()
-            run.run(order["folder"], send)
+            run.run(order["folder"], send, stays=order["stays"])
         except BaseException as error:
             send(messages.error_message(error))
     # Straight out: everything is written, and libraries take their time, or crash, as they are unloaded.

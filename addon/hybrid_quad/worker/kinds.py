@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from ..core.remesh import ProgressCallback
+from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_cache import StageCache
 from .bundle import load_bundle
 from .limit_request import LimitRequest
 from .preview_request import PreviewRequest
@@ -29,8 +30,13 @@ class Request(Protocol[Result]):
     def save(self, path: Path) -> None:
         """Writes the request to a file for :func:`load_request`."""
 
-    def solve(self, progress: ProgressCallback | None = None) -> Result:
-        """Does the work."""
+    def solve(
+        self,
+        progress: ProgressCallback | None = None,
+        cancel: CancelCallback | None = None,
+        cache: StageCache | None = None,
+    ) -> Result:
+        """Does the work, with what the cache has of earlier work where that is of use."""
 
 
 _KINDS: dict[str, Any] = {

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_cache import StageCache
 from ..core.subdivision import subdivide, surface_distances
 from .bundle import Arrays, save_bundle
 
@@ -62,7 +63,12 @@ class LimitRequest:
     result_type: ClassVar[type[LimitSurface]] = LimitSurface
     time_limit: ClassVar[float | None] = None
 
-    def solve(self, progress: ProgressCallback | None = None, cancel: CancelCallback | None = None) -> LimitSurface:
+    def solve(
+        self,
+        progress: ProgressCallback | None = None,
+        cancel: CancelCallback | None = None,
+        cache: StageCache | None = None,
+    ) -> LimitSurface:
         """The limit surface; any thread may call this.
 
         Raises

@@ -26,6 +26,11 @@ def done_message() -> Message:
     return {"event": "done"}
 
 
+def stopped_message() -> Message:
+    """The run was stopped, as nobody waits for it any more."""
+    return {"event": "stopped"}
+
+
 def error_message(error: BaseException) -> Message:
     """The run failed; all that the error says of itself."""
     message: Message = {"event": "error", "kind": _kind_of(error), "text": str(error)}

@@ -11,6 +11,7 @@ import numpy as np
 from ..core.mesh_arrays import FloatArray, IntArray
 from ..core.preview import Preview, preview
 from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_cache import StageCache
 from .bundle import Arrays, save_bundle
 from .request import RemeshRequest
 
@@ -65,7 +66,12 @@ class PreviewRequest:
         """Seconds after which it stops."""
         return self.run.time_limit
 
-    def solve(self, progress: ProgressCallback | None = None, cancel: CancelCallback | None = None) -> PreviewLines:
+    def solve(
+        self,
+        progress: ProgressCallback | None = None,
+        cancel: CancelCallback | None = None,
+        cache: StageCache | None = None,
+    ) -> PreviewLines:
         """The preview; any thread may call this.
 
         Raises
@@ -87,6 +93,7 @@ class PreviewRequest:
             density=run.density,
             progress=progress,
             cancel=cancel,
+            cache=cache,
         )
         return PreviewLines(
             crosses=found.crosses().astype(np.float32),

@@ -26,7 +26,7 @@ from .idleness import Idleness
 from .interpreter import worker_command
 from .kinds import Request
 from .messages import Message, decode, error_of
-from .run import REQUEST, RESULT
+from .run import request_path, result_path, stop_path
 from .stage_errors import told_with_stage
 
 Result = TypeVar("Result")
@@ -45,13 +45,25 @@ _HANGS = 60.0  # seconds without news and without any use of a processor after w
 
 
 class WorkerSeat:
-    """A worker process that waits for a request: everything that it needs is loaded."""
+    """A worker process that waits for a request, or for one after the other: everything that it needs is loaded.
 
-    def __init__(self, *, temporary_folder: str | None = None, command: Sequence[str] | None = None) -> None:
+    Attributes
+    ----------
+    stays : bool
+        Whether it waits for another request after one.
+    requests : int
+        How many it was given.
+    """
+
+    def __init__(
+        self, *, stays: bool = False, temporary_folder: str | None = None, command: Sequence[str] | None = None
+    ) -> None:
         """Starts the process.
 
         Parameters
         ----------
+        stays : bool
+            Whether it is to answer one request after the other, and so to know what they have in common.
         temporary_folder : str, optional
             Where the run's own folder is made, which is private and removed with the run; by default the system's.
         command : sequence of str, optional
@@ -62,10 +74,12 @@ class WorkerSeat:
         OSError
             If files cannot be written or the program cannot be started.
         """
+        self.stays = stays
+        self.requests = 0
         self.folder = Path(tempfile.mkdtemp(prefix="hybrid_quad_", dir=temporary_folder))
         try:
             self.messages: BinaryIO = _created(self.folder / _MESSAGES)
-            self.process = _start(worker_command() if command is None else command, self.folder)
+            self.process = _start(worker_command() if command is None else command, self.folder, stays)
         except BaseException:
             shutil.rmtree(self.folder, ignore_errors=True)
             raise
@@ -74,8 +88,8 @@ class WorkerSeat:
         """Whether the process runs."""
         return self.process.poll() is None
 
-    def hand_over(self, request: Request[Any]) -> None:
-        """Gives the process its request.
+    def hand_over(self, request: Request[Any]) -> int:
+        """Gives the process its next request; its number.
 
         Raises
         ------
@@ -83,12 +97,14 @@ class WorkerSeat:
             If it cannot be written; the process is then gone.
         """
         try:
-            part = self.folder / f"part_{REQUEST}"
+            part = self.folder / "part.npz"
             request.save(part)
-            part.replace(self.folder / REQUEST)
+            part.replace(request_path(self.folder, self.requests))
         except BaseException:
             self.leave()
             raise
+        self.requests += 1
+        return self.requests - 1
 
     def leave(self) -> None:
         """Makes sure that the process is gone, and its files with it."""
@@ -113,6 +129,8 @@ class WorkerRun(Generic[Result]):
         How much of the whole was done then, 0 to 1.
     is_finished : bool
         Whether there was a result or an error then.
+    seat : WorkerSeat
+        The process. One that stays waits for another request after a run that did not fail.
     """
 
     def __init__(
@@ -132,7 +150,7 @@ class WorkerRun(Generic[Result]):
         temporary_folder, command : optional
             See :class:`WorkerSeat`.
         seat : WorkerSeat, optional
-            A process that waits already; it belongs to this run from now on.
+            A process that waits already. It belongs to this run from now on; one that stays, until the run has ended.
         first_stage : str
             What the run is said to do until it says so itself.
 
@@ -149,9 +167,9 @@ class WorkerRun(Generic[Result]):
         self._result_type = request.result_type
         self._limit = request.time_limit
         self._began = self._news = time.monotonic()
-        self._seat = seat or WorkerSeat(temporary_folder=temporary_folder, command=command)
-        self._process, self._messages, self._folder = self._seat.process, self._seat.messages, self._seat.folder
-        self._seat.hand_over(request)
+        self.seat = seat or WorkerSeat(temporary_folder=temporary_folder, command=command)
+        self._process, self._messages, self._folder = self.seat.process, self.seat.messages, self.seat.folder
+        self._number = self.seat.hand_over(request)
         self._idleness = Idleness(self._process.pid)
 
     @property
@@ -196,6 +214,14 @@ class WorkerRun(Generic[Result]):
         if not self.is_finished:
             self._end(Cancelled(f"cancelled {while_in(self.stage)}"))
 
+    def abandon(self) -> None:
+        """Like :meth:`cancel`, but a worker that stays is not killed: it stops within a moment and waits for another request."""
+        if not self.seat.stays:
+            self.cancel()
+        elif not self.is_finished:
+            stop_path(self._folder, self._number).touch()
+            self._error, self.is_finished = Cancelled(f"cancelled {while_in(self.stage)}"), True
+
     def wait(self, timeout: float | None = None) -> bool:
         """Returns when the run has ended, or after some seconds; whether it has."""
         deadline = None if timeout is None else time.monotonic() + timeout
@@ -230,7 +256,8 @@ class WorkerRun(Generic[Result]):
                 self._messages.seek(place)
                 return None
             message = decode(line)
-            if message is None:
+            # An earlier run that was abandoned may still say something.
+            if message is None or message.get("run", self._number) != self._number:
                 continue
             if message["event"] != "progress":
                 return message
@@ -244,17 +271,20 @@ class WorkerRun(Generic[Result]):
             self._end(told_with_stage(error_of(last), self.stage))
             return
         try:
-            self._result = self._result_type(**load_fields(self._folder / RESULT))
+            path = result_path(self._folder, self._number)
+            self._result = self._result_type(**load_fields(path))
+            path.unlink()
         except Exception as error:  # for example a disk that is full
             self._end(error)
         else:
             self._end(None)
 
     def _end(self, error: Exception | None) -> None:
-        """Makes sure that the process is gone, and its files with it."""
+        """Makes sure that the process is gone, and its files with it, unless it is to be kept."""
         self._error = error
         self.is_finished = True
-        self._seat.leave()
+        if error is not None or not self.seat.stays:
+            self.seat.leave()
 
     def _end_of_log(self) -> str:
         return (self._folder / _LOG).read_text(errors="replace")[-_LOG_SHOWN:]
@@ -266,9 +296,10 @@ def _created(path: Path) -> BinaryIO:
     return path.open("rb")
 
 
-def _start(command: Sequence[str], folder: Path) -> subprocess.Popen[bytes]:
+def _start(command: Sequence[str], folder: Path, stays: bool) -> subprocess.Popen[bytes]:
     order = {
         "folder": str(folder),
+        "stays": stays,
         "messages": str(folder / _MESSAGES),
         "package": str(PACKAGE),
         "sys_path": [os.path.abspath(path) for path in sys.path],

@@ -14,6 +14,7 @@ from ..core.options import RemeshOptions
 from ..core.part_weld import PartResult
 from ..core.remesh import CancelCallback, ProgressCallback, RemeshResult, remesh_with_options, usual_length
 from ..core.remesh_part import PartChoice, remesh_part_with_options
+from ..core.stage_cache import StageCache
 from ..core.strokes import Stroke, guides_from_strokes, stronger_of
 from ..core.validation import violations
 from .bundle import Arrays, save_bundle
@@ -83,7 +84,12 @@ class RemeshRequest:
         drawn = guides_from_strokes(self.vertices, self.polygons, drawing, self.stroke_radius * length)
         return stronger_of(given, drawn)
 
-    def solve(self, progress: ProgressCallback | None = None, cancel: CancelCallback | None = None) -> RemeshResult:
+    def solve(
+        self,
+        progress: ProgressCallback | None = None,
+        cancel: CancelCallback | None = None,
+        cache: StageCache | None = None,
+    ) -> RemeshResult:
         """Runs the method and checks what comes of it; any thread may call this.
 
         Raises
@@ -104,6 +110,7 @@ class RemeshRequest:
             density=self.density,
             progress=progress,
             cancel=cancel,
+            cache=cache,
         )
         problems = violations(result.vertices, result.quads)
         if problems:

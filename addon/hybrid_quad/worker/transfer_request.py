@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from ..core.errors import Cancelled, InternalError
 from ..core.mesh_arrays import FloatArray, IntArray, Polygons
 from ..core.remesh import CancelCallback, ProgressCallback
+from ..core.stage_cache import StageCache
 from ..core.stage_names import while_in
 from ..core.surface_places import TriangleMesh
 from ..core.surface_walk import BoolArray
@@ -105,7 +106,12 @@ class TransferRequest:
     result_type: ClassVar[type[TransferredData]] = TransferredData
     time_limit: ClassVar[float | None] = None
 
-    def solve(self, progress: ProgressCallback | None = None, cancel: CancelCallback | None = None) -> TransferredData:
+    def solve(
+        self,
+        progress: ProgressCallback | None = None,
+        cancel: CancelCallback | None = None,
+        cache: StageCache | None = None,
+    ) -> TransferredData:
         """The data on the result; any thread may call this.
 
         Raises

@@ -9,6 +9,8 @@
 
 namespace hybrid_quad {
 
+class StageCache;
+
 /// Everything a run shares with its caller. Passed down by const reference; there is no global state, so two runs
 /// at once give what they give alone.
 struct RunContext {
@@ -17,6 +19,7 @@ struct RunContext {
   std::function<void(const Snapshot&)> on_snapshot;                            ///< empty: no snapshots are made
   std::uint64_t seed = 0;
   int threads = 1;  ///< results do not depend on it
+  StageCache* cache = nullptr;  ///< of what earlier runs of the caller gave; null: none
 
   std::string stage;          ///< name of the stage that runs now
   double stage_begin = 0.0;   ///< its share of the whole run

@@ -196,13 +196,13 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
 
 }  // namespace
 
-ComponentPreview preview_component(const ComponentPlan& planned, double wanted, bool with_quads, const SurfaceIndex& whole,
+ComponentPreview preview_component(const ComponentPlan& planned, double wanted, const SurfaceIndex* whole,
                                    const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
                                    StageClock& clock, const RunContext& context) {
   const Extractable extractable = extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh)));
   PassSettings settings;
   settings.is_rough = extractable.is_rough;
-  return preview_pass(extractable.plan, with_quads, whole, wishes, guides, options, settings, clock, context);
+  return preview_pass(extractable.plan, whole, wishes, guides, options, settings, clock, context);
 }
 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,

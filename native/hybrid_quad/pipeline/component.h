@@ -59,8 +59,9 @@ struct ComponentPreview {
 };
 
 /// The first steps of remesh_component: to the field, or to the quads of one try.
-ComponentPreview preview_component(const ComponentPlan& plan, double wanted, bool with_quads, const SurfaceIndex& whole,
-                                   const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
+/// \param whole  the surface that the component is part of; null: no quads
+ComponentPreview preview_component(const ComponentPlan& plan, double wanted, const SurfaceIndex* whole, const Wishes& wishes,
+                                   const HardGuides& guides, const RemeshOptions& options,
                                    StageClock& clock, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
@@ -16,6 +17,7 @@
 #include "hybrid_quad/pipeline/guide_curves_in_quads.h"
 #include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/pipeline/snapshots.h"
+#include "hybrid_quad/pipeline/stage_cache.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
 #include "hybrid_quad/symmetry/symmetry.h"
@@ -40,8 +42,8 @@ void require_sound(const std::string& stage, const Violations& violations) {
 
 class ComponentRemesher {
  public:
-  /// \param whole  the surface that the component is part of
-  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+  /// \param whole  the surface that the component is part of; the field needs none
+  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes,
                     const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings, StageClock& clock,
                     const RunContext& context)
       : plan_(plan),
@@ -50,7 +52,6 @@ class ComponentRemesher {
         wishes_(wishes),
         guides_(guides),
         options_(options),
-        finishing_(plan, whole, wishes, options),
         settings_(settings),
         clock_(clock),
         context_(context) {}
@@ -62,21 +63,21 @@ class ComponentRemesher {
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
     require_valid("improve", result_.mesh);
-    for (const int q : finishing_.flawed(result_.mesh, context_.threads)) result_.flawed_places.push_back(middle_of(result_.mesh, q));
+    for (const int q : finishing().flawed(result_.mesh, context_.threads)) result_.flawed_places.push_back(middle_of(result_.mesh, q));
     result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
     result_.features_given_way = plan_.given_way;
-    const std::vector<int> doubtful = finishing_.doubtful(result_.mesh, context_.threads);
+    const std::vector<int> doubtful = finishing().doubtful(result_.mesh, context_.threads);
     result_.doubtful_quads = static_cast<int>(doubtful.size());
     for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);
   }
 
-  ComponentPreview preview(bool with_quads) {
+  ComponentPreview preview() {
     prepare();
     const FrameField unit = solve_field();
-    if (with_quads) {
+    if (whole_ != nullptr) {
       Extraction quads = extract_by_any_means(unit, plan_.quads, plan_.quads);
-      finishing_.make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
+      finishing().make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
       quads.features = plan_.features;
       take(std::move(quads));
     } else {
@@ -86,31 +87,60 @@ class ComponentRemesher {
   }
 
  private:
+  /// Made once, by who needs it: the field does not.
+  const Finishing& finishing() {
+    if (!finishing_) finishing_.emplace(plan_, *whole_, wishes_, options_);
+    return *finishing_;
+  }
+
+  /// What `make` gives, or gave in an earlier run for the same lengths.
+  template <class Make>
+  auto recalled_for_plan(StageCache::Level level, const std::string& stage, const Make& make) const {
+    return recalled(plan_.part < 0 ? nullptr : context_.cache, {level, stage, plan_.part, plan_.quads}, make);
+  }
+
   void prepare() {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
-    surface_ = clock_.measure("working surface", [&] {
-      return build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_),
-                                   context_.in_stage("working surface", 0, 0.2));
+    struct Checked {
+      WorkingSurface surface;
+      std::vector<std::string> violations;
+    };
+    Checked checked = clock_.measure("working surface", [&] {
+      return recalled_for_plan(StageCache::Level::kPlan, "working surface", [&] {
+        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_),
+                                           context_.in_stage("working surface", 0, 0.2)), {}};
+        made.violations = violations_of(made.surface, mesh_, plan_.features);
+        return made;
+      });
     });
+    surface_ = std::move(checked.surface);
     result_.working_faces = surface_.mesh.face_count();
     // Shapes that it did not reach may still do: what is assembled is checked against the input again.
-    for (const std::string& violation : violations_of(surface_, mesh_, plan_.features)) {
+    if (!checked.violations.empty()) {
       ++result_.repairs.broken_promises;
-      result_.warnings.push_back("the working surface is not as promised: " + violation);
-      break;
+      result_.warnings.push_back("the working surface is not as promised: " + checked.violations.front());
     }
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
   }
 
   FrameField solve_field() {
     const RunContext context = context_.in_stage("frame field", 0.2, 0.3);
-    FrameField unit = clock_.measure("frame field", [&] {
-      const FrameFieldOptions o = field_options(surface_, wishes_, options_);
-      FrameField field = solve_frame_field(surface_, o, context);
-      direction_weight_ = direction_weights(o);
-      stretch_ = stretch_of(surface_, field, wishes_, options_);
-      return field;
+    struct Solved {
+      FrameField unit;
+      std::vector<double> direction_weight;
+      std::vector<Eigen::Matrix3d> stretch;
+    };
+    Solved solved = clock_.measure("frame field", [&] {
+      return recalled_for_plan(StageCache::Level::kField, "frame field", [&] {
+        const FrameFieldOptions o = field_options(surface_, wishes_, options_);
+        Solved made{solve_frame_field(surface_, o, context), direction_weights(o), {}};
+        made.stretch = stretch_of(surface_, made.unit, wishes_, options_);
+        return made;
+      });
     });
+    direction_weight_ = std::move(solved.direction_weight);
+    stretch_ = std::move(solved.stretch);
+    FrameField unit = std::move(solved.unit);
     result_.field_singularities = unit.singularity_count();
     result_.feature_singularities = unit.feature_cones;
     result_.field_choice = unit.choice;
@@ -203,7 +233,7 @@ class ComponentRemesher {
 
   void finish(Extraction& extraction) {
     if (options_.improve) improve(extraction);
-    finishing_.make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
+    finishing().make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
     extraction.missed = missed_counts(plan_.features, extraction.mesh);
     settle_hard_guides(extraction);
   }
@@ -212,8 +242,8 @@ class ComponentRemesher {
   void split_flawed(Extraction& extraction) {
     if (!plan_.guides.empty()) return;
     const RunContext context = context_.in_stage("improve", 0.97, 0.97);
-    extraction.repairs.split_sides += clock_.measure("improve", [&] { return finishing_.split_flawed(extraction.mesh, context); });
-    extraction.flawed = static_cast<int>(finishing_.flawed(extraction.mesh, context.threads).size());
+    extraction.repairs.split_sides += clock_.measure("improve", [&] { return finishing().split_flawed(extraction.mesh, context); });
+    extraction.flawed = static_cast<int>(finishing().flawed(extraction.mesh, context.threads).size());
   }
 
   void take(Extraction best) {
@@ -347,7 +377,7 @@ class ComponentRemesher {
 
   void improve(Extraction& extraction) {
     const RunContext context = context_.in_stage("improve", 0.83, 0.97);
-    const ImproveReport report = clock_.measure("improve", [&] { return finishing_.improve(extraction.mesh, context); });
+    const ImproveReport report = clock_.measure("improve", [&] { return finishing().improve(extraction.mesh, context); });
     extraction.repairs.mended_places += report.mended;
     extraction.repairs.poor_places += report.placed;
     extraction.repairs.restored_quads += report.restored_quads;
@@ -360,7 +390,7 @@ class ComponentRemesher {
     const RunContext context = context_.in_stage("hard guides", 0.97, 0.97);
     clock_.measure("hard guides", [&] {
       GuidedQuads guided{std::move(extraction.mesh), plan_.features, {}, {}, extraction.flawed};
-      settle_guides(guided, plan_, guides_, finishing_.options(), options_, whole_, context);
+      settle_guides(guided, plan_, guides_, finishing().options(), options_, *whole_, context);
       extraction.mesh = std::move(guided.mesh);
       extraction.features = std::move(guided.features);
       extraction.rings = std::move(guided.rings);
@@ -373,11 +403,11 @@ class ComponentRemesher {
 
   const ComponentPlan& plan_;
   const TriangleMesh& mesh_;
-  const SurfaceIndex& whole_;
+  const SurfaceIndex* whole_;
   const Wishes& wishes_;
   const HardGuides& guides_;
   const RemeshOptions& options_;
-  Finishing finishing_;
+  std::optional<Finishing> finishing_;
   const PassSettings& settings_;
   StageClock& clock_;
   const RunContext& context_;
@@ -392,13 +422,13 @@ class ComponentRemesher {
 
 ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
                          const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context) {
-  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).run();
+  return ComponentRemesher(plan, &whole, wishes, guides, options, settings, clock, context).run();
 }
 
-ComponentPreview preview_pass(const ComponentPlan& plan, bool with_quads, const SurfaceIndex& whole, const Wishes& wishes,
+ComponentPreview preview_pass(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes,
                               const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
                               StageClock& clock, const RunContext& context) {
-  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).preview(with_quads);
+  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).preview();
 }
 
 }  // namespace hybrid_quad

@@ -27,8 +27,9 @@ ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, c
                          const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context);
 
 /// Its first stages: to the field, scaled to the asked lengths, or to the quads of one try.
-ComponentPreview preview_pass(const ComponentPlan& plan, bool with_quads, const SurfaceIndex& whole, const Wishes& wishes,
-                              const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
-                              StageClock& clock, const RunContext& context);
+/// \param whole  the surface that the component is part of; null: no quads
+ComponentPreview preview_pass(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes, const HardGuides& guides,
+                              const RemeshOptions& options, const PassSettings& settings, StageClock& clock,
+                              const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -1,9 +1,11 @@
 #include "hybrid_quad/pipeline/preview.h"
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "hybrid_quad/pipeline/component.h"
+#include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/even_spread.h"
 #include "hybrid_quad/pipeline/run_plan.h"
 
@@ -97,17 +99,19 @@ Preview preview(const PolygonSoup& soup, const RemeshOptions& options, bool with
   Preview out;
   RemeshReport report;
   StageClock clock;
-  const RunPlan run = plan_run(soup, options, context, report, clock);
+  RunPlan run = plan_run(soup, options, context, report, clock);
   const PlaneSet planes = run.domain.options.symmetry.planes;
-  const SurfaceIndex whole(surface_of(run), {});
+  const std::shared_ptr<const SurfaceIndex> whole = with_quads ? index_of_whole(run) : nullptr;
   const Collector collector(run.frame, planes, out);
+  const CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
   double done = 0;
   for (std::size_t i = 0; i < run.plans.size(); ++i) {
-    const ComponentPlan& plan = run.plans[i];
+    ComponentPlan& plan = run.plans[i];
+    if (run.is_by_count) scale_plan(plan, budget.factor());
     const double share = plan.mesh.total_area() / run.area;
     const RunContext part = run.context.in_stage("", 0.04 + 0.96 * done, 0.04 + 0.96 * (done + share));
     ComponentPreview component =
-        preview_component(plan, plan.quads, with_quads, whole, run.wishes[i], run.guides, run.domain.options, clock, part);
+        preview_component(plan, plan.quads, whole.get(), run.wishes[i], run.guides, run.domain.options, clock, part);
     collector.add(component.surface, component.frames);
     if (with_quads)
       collector.add(whole_of(component.quads, run.components[i].mesh, run.marked[i].ends, run.domain.options));

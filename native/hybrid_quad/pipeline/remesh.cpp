@@ -185,7 +185,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   const bool is_by_count = run.is_by_count;
 
   constexpr double kLeastOfPlan = 0.5;  // no component pays with all its shape for what others cost
-  const SurfaceIndex whole(built.mesh, {});
+  const std::shared_ptr<const SurfaceIndex> index = index_of_whole(run);
+  const SurfaceIndex& whole = *index;
   std::vector<ComponentResult> parts(components.size());
   CountBudget budget(plans, is_by_count ? wanted / images : 0);
   WorkBudget work{kExtraWork + kExtraWorkPerQuad * wanted};

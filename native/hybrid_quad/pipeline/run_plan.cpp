@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hybrid_quad/pipeline/snapshots.h"
+#include "hybrid_quad/pipeline/stage_cache.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
 namespace hybrid_quad {
@@ -82,6 +83,48 @@ double given_length(const std::vector<Component>& components, const std::vector<
   return quads > 0 ? std::sqrt(area / quads) : options.edge_length;
 }
 
+std::shared_ptr<const SurfaceIndex> recalled_index(StageCache* cache, const std::string& what, int part, const TriangleMesh& mesh) {
+  return recalled(cache, {StageCache::Level::kPlan, "index of " + what, part},
+                  [&] { return std::make_shared<const SurfaceIndex>(mesh, std::vector<int>{}); });
+}
+
+/// How long the edges of each component are to be.
+struct Sizes {
+  std::vector<Wishes> wishes;  ///< without directions, which no length depends on
+  std::vector<ComponentPlan> plans;
+  double wanted = 0;  ///< quads, of the whole
+  bool is_by_count = false;
+};
+
+/// \param marked, chains  of each component  \param diagonal  of the whole surface
+Sizes sizes_on(const std::vector<Component>& components, const std::vector<MarkedEdges>& marked,
+               const std::vector<std::vector<CountedChain>>& chains, const RemeshDomain& domain, double diagonal, int images,
+               const RunContext& context) {
+  const RemeshOptions& options = domain.options;
+  const double area = domain.mesh.total_area();
+  Sizes out;
+  std::vector<std::vector<double>> chords;
+  const double given = given_length(components, marked, options, diagonal, chords, context);
+  const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
+  double weighted_area = 0;  // at density 1
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const Component& c = components[i];
+    out.wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i].ends, options, even_length, chords[i], context));
+    weighted_area += area_by_density(c.mesh, out.wishes.back().density);
+  }
+  const double length = given > 0 ? given : std::sqrt(images * weighted_area / std::max(1, options.quads));
+  out.wanted = images * weighted_area / (length * length);
+  for (std::size_t i = 0; i < components.size(); ++i)
+    out.plans.push_back(plan_component(components[i].mesh, length, marked[i], chains[i], out.wishes[i], options, context));
+  out.is_by_count = !(given > 0);
+  if (out.is_by_count) {
+    balance_plans(out.plans, out.wanted / images);
+    make_room_for_count(out.plans, out.wanted / images, options.symmetry.planes, context);
+  }
+  for (std::size_t i = 0; i < out.plans.size(); ++i) out.plans[i].part = static_cast<int>(i);
+  return out;
+}
+
 /// The input's surface in coordinates in which its size and place make no difference, and what is asked of it there.
 void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& options, RunContext& context) {
   std::vector<Vector3> positions = built.mesh.positions();
@@ -106,7 +149,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
     mesh_context.checkpoint();
     check_wishes(soup, options);
     check_curve_counts(soup, options.curve_counts);
-    return build_mesh(soup, mesh_context);
+    return recalled(context.cache, {StageCache::Level::kMesh, "mesh"}, [&] { return build_mesh(soup, mesh_context); });
   });
   report.defects = as_given.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
@@ -130,39 +173,33 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
   std::vector<Component> components = split_components(domain.mesh);
   report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());
   const double area = domain.mesh.total_area();
-  std::vector<ComponentPlan> plans;
-  std::vector<Wishes> wishes;
   std::vector<MarkedEdges> marked;
+  std::vector<std::vector<CountedChain>> chains;
   CurveCountLedger counts(options.curve_counts, soup, frame.scale, images);
-  double wanted = 0;  // quads
-  bool is_by_count = false;
-  clock.measure("features and sizes", [&] {
+  Sizes sizes = clock.measure("features and sizes", [&] {
     const RunContext plan_context = context.in_stage("features and sizes", 0.02, 0.04);
-    for (const Component& c : components) marked.push_back(marked_in(c, domain));
-    std::vector<std::vector<double>> chords;
-    const double given = given_length(components, marked, domain.options, built.mesh.diagonal(), chords, plan_context);
-    const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
-    double weighted_area = 0;  // at density 1
+    for (const Component& c : components) {
+      marked.push_back(marked_in(c, domain));
+      chains.push_back(counts.chains_on(c.mesh, c.face, domain.counted_curve));
+    }
+    Sizes found = recalled(context.cache, {StageCache::Level::kPlan, "features and sizes"}, [&] {
+      return sizes_on(components, marked, chains, domain, built.mesh.diagonal(), images, plan_context);
+    });
     for (std::size_t i = 0; i < components.size(); ++i) {
       const Component& c = components[i];
-      wishes.push_back(wishes_on(c.mesh, c.vertex, c.face, domain.values, marked[i].ends, domain.options, even_length,
-                                 chords[i], plan_context));
-      weighted_area += area_by_density(c.mesh, wishes.back().density);
+      add_directions(c.mesh, c.vertex, c.face, domain.values, domain.options, found.wishes[i]);
+      if (!found.wishes[i].guides.empty() && !found.wishes[i].index)
+        found.wishes[i].index = recalled_index(context.cache, "component", static_cast<int>(i), c.mesh);
     }
-    const double length = given > 0 ? given : std::sqrt(images * weighted_area / std::max(1, options.quads));
-    wanted = images * weighted_area / (length * length);
-    for (std::size_t i = 0; i < components.size(); ++i)
-      plans.push_back(plan_component(components[i].mesh, length, marked[i],
-                                     counts.chains_on(components[i].mesh, components[i].face, domain.counted_curve), wishes[i],
-                                     domain.options, plan_context));
-    is_by_count = !(given > 0);
-    if (!is_by_count) return;
-    balance_plans(plans, wanted / images);
-    make_room_for_count(plans, wanted / images, domain.options.symmetry.planes, plan_context);
+    return found;
   });
   return {std::move(options), std::move(context), frame, std::move(input), std::move(domain), std::move(guides), images,
-          std::move(components), std::move(marked), std::move(wishes), std::move(plans), std::move(counts), area, wanted,
-          is_by_count};
+          std::move(components), std::move(marked), std::move(sizes.wishes), std::move(sizes.plans), std::move(counts), area,
+          sizes.wanted, sizes.is_by_count};
+}
+
+std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
+  return recalled_index(run.context.cache, "whole", 0, surface_of(run));
 }
 
 }  // namespace hybrid_quad

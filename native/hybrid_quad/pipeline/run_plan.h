@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "hybrid_quad/mesh/unit_frame.h"
@@ -46,5 +47,6 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
 
 /// The surface that a plan is for.
 inline const TriangleMesh& surface_of(const RunPlan& run) { return run.input.built.mesh; }
+std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run);
 
 }  // namespace hybrid_quad

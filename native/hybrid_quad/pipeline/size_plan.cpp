@@ -199,6 +199,7 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
 ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes,
                            const RunContext& context) {
   ComponentPlan with = plan;
+  with.part = -1;
   add_corners(with, corners);
   plan_lengths(with, mirror_planes, context);
   scale_plan(with, plan.quads / with.quads);
@@ -208,6 +209,7 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,
                                   const RunContext& context) {
   ComponentPlan without = plan;
+  without.part = -1;
   if (!make_room_at(without, places)) return without;
   plan_lengths(without, mirror_planes, context);
   scale_plan(without, plan.quads / without.quads);
@@ -222,6 +224,7 @@ void scale_plan(ComponentPlan& plan, double quads_factor) {
 ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
                            const std::vector<LengthLimit>& limits) {
   ComponentPlan finer = plan;
+  finer.part = -1;
   const double factor = 1 / std::sqrt(quads_factor);
   for (std::size_t v = 0; v < finer.target.size(); ++v)
     finer.target[v] = factor * (as_needed ? std::min(plan.target[v], plan.needed[v]) : plan.target[v]);

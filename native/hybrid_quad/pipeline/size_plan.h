@@ -31,6 +31,7 @@ struct ComponentPlan {
   std::vector<CountedChain> asked_chains;  ///< edges of that mesh that are to get certain numbers of quads
   std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
   double least_ratio = 0;       ///< see FeatureSizeOptions
+  int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
 };
 

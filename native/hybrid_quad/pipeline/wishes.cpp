@@ -145,19 +145,23 @@ Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, 
                  const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                  double usual_length, const std::vector<double>& chords, const RunContext& context) {
   Wishes wishes;
-  std::vector<Vector3> guides =
-      at_corners(options.vertex_guides, options.face_guides, Vector3(0, 0, 0), component, vertex, face, built);
   wishes.corner_frames = at_corners(options.vertex_frames, options.face_frames, Frame{Vector3::Zero(), Vector3::Zero()},
                                     component, vertex, face, built);
-  if (!wishes.corner_frames.empty()) put_frames_first(component, wishes.corner_frames, guides);
-  if (!guides.empty()) wishes.guides = GuideMap(component, guides);
   wishes.density = density_of(component, vertex, built, wishes.corner_frames, marked, options, usual_length, chords, context);
   wishes.most_stretch = std::clamp(options.anisotropy, 1.0, kMostFrameStretch);
   for (const Frame& frame : wishes.corner_frames)
     if (!is_free(frame)) wishes.most_stretch = std::max(wishes.most_stretch, stretch_ratio(frame));
-  if (!wishes.guides.empty() || !wishes.corner_frames.empty() || !wishes.density.empty())
+  if (!wishes.corner_frames.empty() || !wishes.density.empty())
     wishes.index = std::make_shared<const SurfaceIndex>(component, std::vector<int>{});
   return wishes;
+}
+
+void add_directions(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
+                    const BuiltMesh& built, const RemeshOptions& options, Wishes& wishes) {
+  std::vector<Vector3> guides =
+      at_corners(options.vertex_guides, options.face_guides, Vector3(0, 0, 0), component, vertex, face, built);
+  if (!wishes.corner_frames.empty()) put_frames_first(component, wishes.corner_frames, guides);
+  if (!guides.empty()) wishes.guides = GuideMap(component, guides);
 }
 
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,

@@ -26,13 +26,17 @@ struct Wishes {
 /// \throws InputError wrong_count, non_finite_guide, non_finite_density, non_finite_frame, degenerate_frame, non_finite_stroke; names the elements
 void check_wishes(const PolygonSoup& soup, const RemeshOptions& options);
 
-/// The caller's arrays, which are by input vertex or input polygon, on a component of the built mesh.
+/// The caller's arrays but directions, which are by input vertex or input polygon, on a component of the built mesh.
 /// \param vertex, face  #V, #F of the component: the vertex and the face of built.mesh
 /// \param usual_length  quad edge length where nothing else is asked
 /// \param chords  chord_lengths_on() the component
 Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
                  const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked, const RemeshOptions& options,
                  double usual_length, const std::vector<double>& chords, const RunContext& context);
+
+/// Adds the directions, which no length depends on; the index that they call for is left to the caller.
+void add_directions(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
+                    const BuiltMesh& built, const RemeshOptions& options, Wishes& wishes);
 
 /// Lengths for options.chord_error. \param diagonal  of the whole surface  \return #V; empty where no such error is asked
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,

@@ -44,7 +44,7 @@ class FieldPreview:
     """
 
     def __init__(self) -> None:
-        self.session: Session[PreviewLines] = Session(self._ask, self._signature, self._take)
+        self.session: Session[PreviewLines] = Session(self._ask, self._signature, self._take, keeps_worker=True)
         self._source: MeshSource | None = None
         self._shapes: dict[str, list[Shape]] = {}
 

@@ -38,6 +38,8 @@ class Session(Generic[Result]):
         requests: Callable[[bpy.types.Object, bpy.types.Depsgraph], Sequence[Request[Result]]],
         signature: Callable[[bpy.types.Object], Any],
         accept: Callable[[bpy.types.Object, Result], None],
+        *,
+        keeps_worker: bool = False,
     ) -> None:
         """A session that shows nothing yet.
 
@@ -49,8 +51,12 @@ class Session(Generic[Result]):
             Changes where the settings that the requests depend on do.
         accept : callable(object, result)
             Receives every result.
+        keeps_worker : bool
+            Whether one worker answers one request after the other, so that it knows what they have in common: for requests that
+            stop within a moment when they are asked to.
         """
         self._requests, self._signature, self._accept = requests, signature, accept
+        self._keeps_worker = keeps_worker
         self.error = ""
         self.result: Result | None = None
         self._object: int | None = None
@@ -137,7 +143,7 @@ class Session(Generic[Result]):
         if seat is not None and not seat.is_there():  # the system may have ended it
             seat.leave()
             seat = None
-        self._worker = WorkerRun(self._waiting.pop(0), seat=seat or _new_seat())
+        self._worker = WorkerRun(self._waiting.pop(0), seat=seat or self._new_seat())
 
     def _look(self, obj: bpy.types.Object) -> None:
         if self._worker is None or not self._worker.poll():
@@ -146,11 +152,12 @@ class Session(Generic[Result]):
         try:
             self.result = worker.result()
             self.error = ""
+            self._keep(worker.seat)
             self._accept(obj, self.result)
             if self._waiting:
                 self._start_next()
             else:
-                self._seat = self._seat or _new_seat()
+                self._seat = self._seat or self._new_seat()
         except Exception as error:
             self._fail(error)
 
@@ -163,8 +170,14 @@ class Session(Generic[Result]):
         worker, self._worker = self._worker, None
         self._waiting.clear()
         if worker is not None:
-            worker.cancel()
+            worker.abandon()
+            self._keep(worker.seat)
 
+    def _keep(self, seat: WorkerSeat) -> None:
+        """Has the next request answered by a worker that stays."""
+        if seat.stays:
+            self._seat = seat
 
-def _new_seat() -> WorkerSeat:
-    return WorkerSeat(temporary_folder=bpy.app.tempdir or None, command=worker_command(host=bpy.app.binary_path))
+    def _new_seat(self) -> WorkerSeat:
+        command = worker_command(host=bpy.app.binary_path)
+        return WorkerSeat(stays=self._keeps_worker, temporary_folder=bpy.app.tempdir or None, command=command)
