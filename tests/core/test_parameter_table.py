@@ -9,7 +9,7 @@ from hybrid_quad.cli.main import _parser
 from hybrid_quad.core.options import RemeshOptions
 from support.doc_tables import parameter_rows, quoted
 
-NOT_WISHES = {"vertices", "faces", "progress", "cancel", "dump_stages", "on_snapshot"}
+NOT_WISHES = {"vertices", "faces", "progress", "cancel", "cache", "dump_stages", "on_snapshot"}
 
 
 def test_every_option_has_a_row_with_its_default(root):
