@@ -110,6 +110,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["mended_places"] = repairs.mended_places;
   result["poor_places"] = repairs.poor_places;
   result["split_sides"] = repairs.split_sides;
+  result["refined_places"] = repairs.refined_places;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
   result["restored_quads"] = repairs.restored_quads;
   return result;

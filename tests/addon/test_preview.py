@@ -105,6 +105,26 @@ def test_a_change_of_settings_or_mesh_is_followed_and_other_objects_are_not():
     assert sessions.field.session.target() == cube and len(sessions.field.session.result.features) > 0
 
 
+def test_one_worker_answers_all_changes_of_the_field():
+    obj = add_sphere()
+    show(show_field=True)
+    settle()
+    seat = sessions.field.session._seat
+    for quads in (300, 350):
+        obj.hybrid_quad.quads = quads
+        settle()
+        assert sessions.field.session.result.report["wanted_quads"] == pytest.approx(quads)
+    obj.hybrid_quad.quads = 200_000
+    sessions.step(at_once=True)
+    assert sessions.field.session._worker is not None
+    obj.hybrid_quad.quads = 400  # while it is at work
+    settle()
+    assert sessions.field.session.result.report["wanted_quads"] == pytest.approx(400)
+    assert sessions.field.session._seat is seat and seat.is_there() and seat.requests == 5
+    show(show_field=False)
+    assert not seat.is_there()
+
+
 def test_views_are_drawn_anew_for_results_and_not_for_news(monkeypatch):
     obj = add_sphere()
     show(show_field=True)

@@ -84,6 +84,15 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
                        const SurfaceIndex* whole = nullptr);
 
+/// Against quads that are still flawed: these and some rings around are refined, three by three, and relaxed, where that leaves
+/// fewer. Where sides cut through what they should go around, all of them get bends at once. Much more is changed than by
+/// splitting sides, and eight quads are added for every one refined.
+/// \param agreement  of flawed_quads  \param whole  as for improve_quads
+/// \returns places refined
+int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
+                        const SurfaceIndex* whole = nullptr);
+
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
 /// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).

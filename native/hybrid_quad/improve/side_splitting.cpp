@@ -37,6 +37,18 @@ bool is_sound(const SideSplit& split, bool on_boundary) {
   return std::min(here[0] + there[1], here[1] + there[0]) >= kLeastInside;
 }
 
+Vector3 point_on_side(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, int a, int b,
+                      double part) {
+  const Vector3 &from = mesh.positions[a], &to = mesh.positions[b];
+  if (edge == nullptr) return from + part * (to - from);
+  const CurveGeometry& curve = piece.curves[edge->curve];
+  const auto arc_of = [&](int v, double end) { return mesh.kind[v] == VertexKind::kCurve ? piece.arc[v] : end; };
+  const double begin = arc_of(edge->a, 0);
+  double length = arc_of(edge->b, curve.length()) - begin;
+  if (curve.closed() && length <= 0) length += curve.length();
+  return curve.at(begin + (edge->a == a ? part : 1 - part) * length);
+}
+
 SideSplitter::SideSplitter(const QuadMesh& mesh, const SurfaceIndex& surface, std::vector<int> region)
     : mesh_(mesh), surface_(surface), region_(std::move(region)), quads_at_(mesh.positions.size()) {
   for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q)

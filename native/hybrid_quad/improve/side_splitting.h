@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "hybrid_quad/improve/workpiece.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/surface_index.h"
 
@@ -23,6 +24,10 @@ struct SideSplit {
 
 /// Whether both new vertices of the side have as many quads as a vertex there needs.
 bool is_sound(const SideSplit& split, bool on_boundary);
+
+/// The point at some part of the way from a to b, which are the ends of a side: along the feature curve if `edge` is not null.
+/// \param piece  of `mesh`, located (Workpiece::locate_all)
+Vector3 point_on_side(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, int a, int b, double part);
 
 /// Splits sides of quads, with feature edges along curves; the rest of the mesh stays as it is, and so does its topology.
 class SideSplitter {

@@ -141,16 +141,9 @@ class FlawedSplitter {
 
   std::array<Vector3, 4> path_of(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) const {
     const int a = quads_.quads[split.quad][split.side], b = quads_.quads[split.quad][(split.side + 1) & 3];
-    const Vector3 &from = quads_.positions[a], &to = quads_.positions[b];
     const QuadMesh::FeatureEdge* edge = splitter.feature_edge(a, b);
-    if (edge == nullptr) return {from, from + split.first * (to - from), from + split.second * (to - from), to};
-    const CurveGeometry& curve = piece.curves[edge->curve];
-    const auto arc_of = [&](int v, double end) { return quads_.kind[v] == VertexKind::kCurve ? piece.arc[v] : end; };
-    const double begin = arc_of(edge->a, 0);
-    double length = arc_of(edge->b, curve.length()) - begin;
-    if (curve.closed() && length <= 0) length += curve.length();
-    const auto at = [&](double part) { return curve.at(begin + (edge->a == a ? part : 1 - part) * length); };
-    return {from, at(split.first), at(split.second), to};
+    const auto at = [&](double part) { return point_on_side(quads_, piece, edge, a, b, part); };
+    return {quads_.positions[a], at(split.first), at(split.second), quads_.positions[b]};
   }
 
   void mend(QuadMesh& mesh, const std::vector<int>& flawed) {

@@ -77,14 +77,18 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
   return out;
 }
 
-/// Splits sides of flawed quads. Not where guides follow the quads' edges.
-void split_flawed(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options,
-                  ComponentResult& result, StageClock& clock, const RunContext& context) {
+using LastMeans = int (Finishing::*)(QuadMesh&, const RunContext&) const;
+
+/// Last means against flawed quads. Not where guides follow the quads' edges, which keep their number.
+/// \returns what `means` counts
+int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
+              const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
   const Finishing finishing(plan, whole, wishes, options);
   const RunContext improving = context.in_stage("improve", 0.97, 0.97);
-  result.repairs.split_sides += clock.measure("improve", [&] { return finishing.split_flawed(result.mesh, improving); });
+  const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
   result.flawed_quads = static_cast<int>(finishing.flawed(result.mesh, context.threads).size());
   result.doubtful_quads = static_cast<int>(finishing.doubtful(result.mesh, context.threads).size());
+  return count;
 }
 
 /// Passes until one has no flawed quads; the best of them.
@@ -133,7 +137,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       // A few splits change less than other passes, which have other quads everywhere.
       std::size_t in_vain = 0;
       if (!any && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
-        split_flawed(unrefined, whole, wishes, options, result, clock, pass);
+        result.repairs.split_sides += put_right(&Finishing::split_flawed, unrefined, whole, wishes, options, result, clock, pass);
         if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
       }
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
@@ -161,8 +165,12 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
-  if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain && planned.guides.empty())
-    split_flawed(*plan_of_best, whole, wishes, options, best, clock, context);
+  if (planned.guides.empty()) {
+    if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain)
+      best.repairs.split_sides += put_right(&Finishing::split_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
+    if (best.flawed_quads > 0)
+      best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
+  }
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
   return best;
 }

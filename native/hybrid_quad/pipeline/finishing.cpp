@@ -92,10 +92,21 @@ std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
 int Finishing::split_flawed(QuadMesh& mesh, const RunContext& context) const {
   const int splits =
       split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, least_agreement(whole_), context, &whole_);
-  if (splits == 0) return 0;
+  if (splits > 0) settle_features(mesh);
+  return splits;
+}
+
+int Finishing::refine_flawed(QuadMesh& mesh, const RunContext& context) const {
+  const int places =
+      refine_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, least_agreement(whole_), context, &whole_);
+  if (places > 0) settle_features(mesh);
+  return places;
+}
+
+/// After feature edges have been split.
+void Finishing::settle_features(QuadMesh& mesh) const {
   order_feature_edges(mesh, plan_.mesh, plan_.features);
   if (asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
-  return splits;
 }
 
 std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const {

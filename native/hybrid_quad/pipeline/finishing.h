@@ -22,6 +22,8 @@ class Finishing {
   ImproveReport improve(QuadMesh& mesh, const RunContext& context) const;
   /// The last resort for flawed quads (split_flawed_quads). \returns sides split
   int split_flawed(QuadMesh& mesh, const RunContext& context) const;
+  /// What is left to do where no side to split helps (refine_flawed_quads). \returns places refined
+  int refine_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 
@@ -31,6 +33,8 @@ class Finishing {
   std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
 
  private:
+  void settle_features(QuadMesh& mesh) const;
+
   const ComponentPlan& plan_;
   const SurfaceIndex& whole_;
   const RemeshOptions& asked_;

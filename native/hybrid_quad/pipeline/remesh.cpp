@@ -159,6 +159,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   mended_places += other.mended_places;
   poor_places += other.poor_places;
   split_sides += other.split_sides;
+  refined_places += other.refined_places;
   opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;
