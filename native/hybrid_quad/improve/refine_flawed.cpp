@@ -168,7 +168,6 @@ class FlawedRefiner {
     if (flawed.empty() || flawed.size() > kWorthMending) return mesh;
     Workpiece piece = relaxed;
     Smoother smoother(piece, smoothing());
-    smoother.update_frames(true);
     FutileMending futile(piece.h);
     mend_listed(piece, smoother, whole_, agreement_, context_, flawed, futile);
     return piece.mesh.extract(piece.face);

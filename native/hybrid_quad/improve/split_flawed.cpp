@@ -154,7 +154,6 @@ class FlawedSplitter {
     SmootherOptions smoothing;
     smoothing.threads = context_.threads;
     Smoother smoother(piece, smoothing);
-    smoother.update_frames(true);
     mend_listed(piece, smoother, whole_, agreement_, context_, flawed, futile_);
     mesh = piece.mesh.extract(piece.face);
   }

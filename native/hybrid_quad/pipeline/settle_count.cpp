@@ -20,6 +20,7 @@ constexpr double kLeastGain = 1e-9;
 constexpr int kRowRounds = 2, kRounds = 6;
 /// Improving takes longer than all else, most of all where it is in vain.
 constexpr int kMostImprovements = 6;
+constexpr std::size_t kFewFlawed = 4;  ///< sides are split for no more: where improving leaves many, the number is out of reach
 
 class CountSettling {
  public:
@@ -111,7 +112,8 @@ class CountSettling {
   QuadMesh improved(QuadMesh mesh) {
     ++improvements_;
     finishing_.improve(mesh, context_);
-    if (!finishing_.flawed(mesh, context_.threads).empty())
+    const std::size_t flawed = finishing_.flawed(mesh, context_.threads).size();
+    if (flawed > 0 && flawed <= kFewFlawed)
       result_.repairs.split_sides += finishing_.split_flawed(mesh, context_);
     finishing_.make_mirrorable(mesh, context_);
     return mesh;
