@@ -151,6 +151,16 @@ def test_tiny_parts_do_not_take_many_times_the_asked_quads():
     assert len(result.quads) < 300 + 40 * 40
 
 
+@pytest.mark.parametrize(("size", "is_left_out"), [(1e-5, True), (2e-5, True), (1e-3, False)])
+def test_specks_are_left_out_and_listed(size, is_left_out):
+    vertices, faces = surfaces.sphere(4)
+    specks = np.concatenate([vertices, 3 + size * vertices]), np.concatenate([faces, faces + len(vertices)])
+    result = hybrid_quad.remesh(*specks, quads=100)
+    left_out = {element for defect in hybrid_quad.check(*specks) if defect.code == "tiny_component" for element in defect.elements}
+    assert left_out == (set(range(len(faces), 2 * len(faces))) if is_left_out else set())
+    assert result.report["flawed_quads"] == 0
+
+
 def test_what_is_odd_but_possible_is_listed_and_left():
     vertices, faces = surfaces.sphere(4)
     other = (

@@ -26,7 +26,7 @@ constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
-constexpr double kLeastShare = 1e-10;    ///< of the area; parts with less are specks, a hundred thousandth as long as the rest
+constexpr double kLeastShare = 1e-9;     ///< of the area; parts with less are specks, a thirty thousandth as long as the rest
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
 constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
