@@ -97,7 +97,9 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 /// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).
 /// \param edge  mean edge length of all that the quads are part of
+/// \param surface  null, or the quads around one that is opened are not to be flawed beside it (`is_flawed`): where they are, other
+///     vertices and steps up to 25 times as long are tried
 /// \returns number of quads opened
-int open_flat_quads(QuadMesh& mesh, double edge);
+int open_flat_quads(QuadMesh& mesh, double edge, const SurfaceIndex* surface = nullptr, const Agreement& agreement = {});
 
 }  // namespace hybrid_quad

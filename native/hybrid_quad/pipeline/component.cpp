@@ -171,7 +171,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     if (best.flawed_quads > 0)
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
   }
-  best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh));
+  best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh), &whole, least_agreement(whole));
   return best;
 }
 

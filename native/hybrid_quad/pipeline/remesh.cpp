@@ -97,7 +97,7 @@ void open_flat_quads_of(std::vector<ComponentResult>& parts, const SurfaceIndex&
     quads += count;
   }
   for (ComponentResult& part : parts) {
-    const int opened = open_flat_quads(part.mesh, length / quads);
+    const int opened = open_flat_quads(part.mesh, length / quads, &whole, least_agreement(whole));
     part.repairs.opened_flat_quads += opened;
     if (opened > 0) part.flawed_quads = static_cast<int>(flawed_quads(part.mesh, whole, least_agreement(whole), threads).size());
   }
