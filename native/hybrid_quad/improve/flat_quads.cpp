@@ -26,16 +26,19 @@ class FlatQuadOpener {
       for (const int v : mesh.quads[q]) quads_at_[v].push_back(q);
   }
 
-  /// In rounds, as a vertex that moves for one quad may flatten another.
+  /// In rounds, as a vertex that moves for one quad may flatten another or turn it over.
   int run() {
     constexpr int kRounds = 8;
     int opened = 0;
+    std::vector<char> is_beside(mesh_.quads.size(), 0);
     for (int round = 0; round < kRounds; ++round) {
       const int before = opened;
       for (int q = 0; q < static_cast<int>(mesh_.quads.size()); ++q) {
-        if (area_vector(q).norm() > kLeastArea * edge_ * edge_) continue;
+        const bool is_turned = round > 0 && is_beside[q] && surface_ != nullptr && flawed_among({q}) > 0;
+        if (!is_turned && area_vector(q).norm() > kLeastArea * edge_ * edge_) continue;
         open(q);
         ++opened;
+        for (const int beside : around(q)) is_beside[beside] = 1;
       }
       if (opened == before) break;
     }
