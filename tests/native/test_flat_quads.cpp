@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
 namespace {
@@ -77,6 +78,22 @@ TEST(FlatQuads, GoodOnesStay) {
   const QuadMesh before = mesh;
   EXPECT_EQ(open_flat_quads(mesh, 1), 0);
   EXPECT_EQ(mesh.positions, before.positions);
+}
+
+TEST(FlatQuads, NoneAroundIsTurnedOver) {
+  const TriangleMesh sheet({{-1, -1, 0}, {4, -1, 0}, {4, 4, 0}, {-1, 4, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  const SurfaceIndex index(sheet, {});
+  QuadMesh mesh = nine_quads();
+  const auto quad = mesh.quads[4];
+  mesh.positions[quad[0]] = {1.5, 1.5, 0};
+  mesh.positions[quad[2]] = {1.5, 1.5, 0};
+  // The quad beyond the end that usually moves is smaller than the step is long.
+  for (const int v : {11, 14, 15}) mesh.positions[v] = Vector3(1.5, 1.5, 0) + 5e-5 * (mesh.positions[v] - Vector3(2, 2, 0));
+  QuadMesh blind = mesh;
+  open_flat_quads(blind, 1);
+  EXPECT_GT(flawed_quads(blind, index).size(), 0u);
+  EXPECT_GT(open_flat_quads(mesh, 1, &index), 0);
+  EXPECT_EQ(flawed_quads(mesh, index), std::vector<int>());
 }
 
 }  // namespace
