@@ -19,8 +19,13 @@ from pack_wheel import write_zip
 ADDON = Path(__file__).resolve().parents[2] / "addon" / "hybrid_quad"
 MANIFEST = "blender_manifest.toml"
 LICENCE = ADDON.parents[1] / "LICENSE"
-# Blender's names of the platforms that wheels are made for.
-PLATFORMS = {"linux_x86_64": "linux-x64"}
+# Blender's names of the platforms that wheels are made for, by the ends of the wheels' names.
+PLATFORMS = {
+    "linux-x64": re.compile(r"(many)?linux\w*_x86_64"),
+    "windows-x64": re.compile(r"win_amd64"),
+    "macos-arm64": re.compile(r"macosx_\d+_\d+_arm64"),
+    "macos-x64": re.compile(r"macosx_\d+_\d+_x86_64"),
+}
 _SKIPPED = {".pyc", ".so", ".pyd"}
 
 
@@ -51,10 +56,11 @@ def main() -> None:
 
 def platform_of(wheels: list[Path]) -> str:
     """Blender's name of the one platform that all the wheels are for."""
-    machines = {re.sub(r".*linux.*?_(x86_64|aarch64)$", r"linux_\1", wheel.stem) for wheel in wheels}
-    if len(machines) != 1 or not machines <= PLATFORMS.keys():
-        raise SystemExit(f"wheels for one of {sorted(PLATFORMS)} are needed, not for {sorted(machines)}")
-    return PLATFORMS[machines.pop()]
+    tags = {wheel.stem.rpartition("-")[2].partition(".")[0] for wheel in wheels}
+    platforms = {name for tag in tags for name, pattern in PLATFORMS.items() if pattern.fullmatch(tag)}
+    if len(platforms) != 1 or not all(PLATFORMS[min(platforms)].fullmatch(tag) for tag in tags):
+        raise SystemExit(f"wheels for one of {sorted(PLATFORMS)} are needed, not for {sorted(tags)}")
+    return platforms.pop()
 
 
 def sources() -> dict[str, bytes]:

@@ -21,8 +21,12 @@ def asset_lock(path: Path, give_up: Callable[[], bool]) -> Iterator[int | None]:
     """Holds the lock file `path`; gives its descriptor, or None where `give_up` became true before it was free.
 
     A process that inherits the descriptor holds the lock as well. So after a batch was killed, the next one waits until
-    the worker processes of the first are gone too. The system frees the lock of a process that dies.
+    the worker processes of the first are gone too. The system frees the lock of a process that dies. On Windows there is no lock,
+    and -1 is given.
     """
+    if fcntl is None:
+        yield -1
+        return
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
     try:
         yield descriptor if _wait_for(descriptor, give_up) else None
@@ -31,7 +35,7 @@ def asset_lock(path: Path, give_up: Callable[[], bool]) -> Iterator[int | None]:
 
 
 def _wait_for(descriptor: int, give_up: Callable[[], bool]) -> bool:
-    while fcntl is not None:
+    while True:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             return True
@@ -39,4 +43,3 @@ def _wait_for(descriptor: int, give_up: Callable[[], bool]) -> bool:
             if give_up():
                 return False
             time.sleep(_PAUSE)
-    return True

@@ -25,6 +25,8 @@ from .worker_process import Outcome, run_process
 _LOG = "messages.txt"
 _HASH = "job_hash"  # in the work folder: the job that its files are of
 _STATUS_OF_EXIT = {2: "wrong_usage", 3: "internal_error"}  # where there is no report
+# By somebody, or by the system for want of memory. Windows has no SIGKILL.
+_KILLED = {getattr(signal, name) for name in ("SIGKILL", "SIGTERM") if hasattr(signal, name)}
 
 
 class BatchFault(Exception):
@@ -184,7 +186,7 @@ def _failed(described: AssetStatus, outcome: Outcome) -> AssetStatus:
     if outcome.stopped:
         status, message = outcome.stopped, "the run did not stop by itself and was killed"
     elif outcome.exit_status < 0:
-        killed = -outcome.exit_status in (signal.SIGKILL, signal.SIGTERM)
+        killed = -outcome.exit_status in _KILLED
         status = asset_status.LOST if killed else asset_status.CRASHED
         message = f"the worker process was ended by {_signal_name(-outcome.exit_status)}"
         message += ", maybe for want of memory" if killed else f"; its last message: {last_line[0]}"

@@ -24,12 +24,12 @@ def component_labels(count: int, first: Indices, second: Indices) -> Indices:
     """
     label = np.arange(count, dtype=np.int64)
     while True:
-        low, high = np.minimum(first, second), np.maximum(first, second)
+        low, high = np.minimum(first, second).astype(np.int64), np.maximum(first, second).astype(np.int64)
         apart = low < high
         if not apart.any():
             return label
         # Every root goes to the least of those next to it that are less; sorted, that is the first of its own.
-        keys = np.sort(high[apart] * np.int64(count) + low[apart])
+        keys = np.sort(high[apart] * count + low[apart])
         root, least = keys // count, keys % count
         is_first = np.append(True, root[1:] != root[:-1])
         label[root[is_first]] = least[is_first]
