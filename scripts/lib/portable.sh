@@ -108,7 +108,8 @@ private_apt() {
   "${apt[@]}" "$@"
 }
 
-# static_opensubdiv: opensubdiv in the platform's folder, Debian's source of it, compiled by the portable compiler.
+# static_opensubdiv: opensubdiv in the platform's folder, Debian's source of it, compiled by the portable compiler. Blender has an
+# OpenSubdiv of its own in the same process, so ours is hidden.
 static_opensubdiv() {
   local folder=$PLACE/opensubdiv source=$PORTABLE/opensubdiv-$OPENSUBDIV
   [ -e "$folder/lib/libosdCPU.a" ] && [ "$folder/lib/libosdCPU.a" -nt "$PLACE/zig/c++" ] && return
@@ -119,6 +120,7 @@ static_opensubdiv() {
   fi
   cmake -S "$source" -B "$folder" --toolchain "$PLACE/toolchain.cmake" -DCMAKE_BUILD_TYPE=Release \
     -DBUILD_SHARED_LIBS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
+    -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON \
     -DNO_{EXAMPLES,TUTORIALS,REGRESSION,PTEX,DOC,OMP,TBB,CUDA,OPENCL,OPENGL,CLEW,GLFW,TESTS,GLTESTS,METAL,DX,MACOS_FRAMEWORK}=ON >/dev/null
   cmake --build "$folder" --target osd_static_cpu -- --quiet
 }
