@@ -15,8 +15,9 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-import hybrid_quad
 import numpy as np
+
+import hybrid_quad
 from hybrid_quad.core.mesh_io import read_mesh
 
 SIDE = 160  # points around the torus, either way

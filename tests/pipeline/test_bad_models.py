@@ -156,7 +156,12 @@ def test_specks_are_left_out_and_listed(size, is_left_out):
     vertices, faces = surfaces.sphere(4)
     specks = np.concatenate([vertices, 3 + size * vertices]), np.concatenate([faces, faces + len(vertices)])
     result = hybrid_quad.remesh(*specks, quads=100)
-    left_out = {element for defect in hybrid_quad.check(*specks) if defect.code == "tiny_component" for element in defect.elements}
+    left_out = {
+        element
+        for defect in hybrid_quad.check(*specks)
+        if defect.code == "tiny_component"
+        for element in defect.elements
+    }
     assert left_out == (set(range(len(faces), 2 * len(faces))) if is_left_out else set())
     assert result.report["flawed_quads"] == 0
 
