@@ -7,7 +7,7 @@
 
 namespace hybrid_quad {
 
-/// Up to this lambda frames count as integrable all over: what is left of the curl is at most a hundredth of an edge (docs/decisions/0035).
+/// Up to this lambda frames count as integrable all over: what is left of the curl is at most a hundredth of an edge (docs/decisions/0036).
 constexpr double kMostForPotentials = 2e-5;
 
 struct CurlCorrectionOptions {
