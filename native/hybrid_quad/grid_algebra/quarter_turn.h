@@ -28,6 +28,16 @@ inline Vector2 turned(const Vector2& uv, int k) {
   return {r[0], r[1]};
 }
 
+/// One coordinate of a turned vector: turned(x, k)[coordinate] = sign * x[source].
+struct TurnedCoordinate {
+  int source;
+  int sign;
+};
+inline TurnedCoordinate turned_coordinate(int coordinate, int k) {
+  constexpr TurnedCoordinate kTable[4][2] = {{{0, 1}, {1, 1}}, {{1, 1}, {0, -1}}, {{0, -1}, {1, -1}}, {{1, -1}, {0, 1}}};
+  return kTable[k & 3][coordinate];
+}
+
 /// The periodic field's value at a point: a = e^{i pi (u + v)}, b = e^{i pi (u - v)} where it is exact. In the paper's
 /// components Psi0 = Re(a + b) / 2, Psi1 = Im(a + b) / 2, Psi2 = Im(a - b) / 2, Psi3 = Re(b - a) / 2.
 struct PhasePair {

@@ -7,6 +7,9 @@
 
 namespace hybrid_quad {
 
+/// Up to this lambda frames count as integrable all over: what is left of the curl is at most a hundredth of an edge (docs/decisions/0036).
+constexpr double kMostForPotentials = 2e-5;
+
 struct CurlCorrectionOptions {
   double curl_weight = 1e-5;     ///< lambda
   double feature_weight = 30.0;
@@ -23,8 +26,7 @@ bool is_sound_correction(const std::array<double, 4>& x);
 /// measures the same in both: the minimum over X of
 ///   sum over edges  w |X_f d_f + turn (X_g d_g)|^2  +  lambda sum over faces  area (|X - I|^2 weighted 1 on the diagonal, 2 off it, or
 /// more where directions are to stay)
-/// and of the transversal part of feature edges (MATH 7). Solved for one multiplier per edge and row, which is a screened
-/// Laplacian on edges with a third of the primal system's fill (FEW_SINGULARITIES 3).
+/// and of the transversal part of feature edges (MATH 7). By VertexPotentials for small lambda, by EdgeMultipliers otherwise.
 /// \return #F matrices; the identity where nothing couples
 std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface, const FrameField& field,
                                                    const CurlCorrectionOptions& options, const RunContext& context);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
+#include "hybrid_quad/grid_algebra/quarter_turn.h"
 #include "hybrid_quad/numerics/sparse_factor.h"
 #include "hybrid_quad/periodic_field/phase_graph.h"
 
@@ -13,35 +13,21 @@ namespace {
 
 constexpr double kStiffer = 4;
 constexpr double kStiffest = 1e4;
-constexpr double kResidual = 1e-2;
-constexpr int kMostSteps = 15;
 /// A face below this share of the frame's own area counts as folded.
 constexpr double kThinShare = 0.03;
 
 double cross(const Vector2& x, const Vector2& y) { return x[0] * y[1] - x[1] * y[0]; }
 
-/// Which vertex coordinate a face coordinate is after `turn`, and with which sign.
-struct Component {
-  int index;
-  int sign;
-};
-Component component(int coordinate, int turn) {
-  static constexpr Component kTable[4][2] = {
-      {{0, 1}, {1, 1}}, {{1, 1}, {0, -1}}, {{0, -1}, {1, -1}}, {{1, -1}, {0, 1}}};
-  return kTable[turn & 3][coordinate];
-}
-
-/// The normal equations' pattern is fixed by the constraints; weights change from round to round.
+/// The normal equations for the values at some vertices, the others held.
 class SlipProblem {
  public:
+  /// \param moves  #V: whose values change
   SlipProblem(const TriangleMesh& mesh, const FrameField& frames, const GridMeasure& measure,
-              const LiftedGrid& grid)
+              const LiftedGrid& grid, const std::vector<char>& moves)
       : mesh_(mesh), frames_(frames), measure_(measure), unknown_(mesh.vertex_count(), {-1, -1}) {
     for (int v = 0; v < mesh.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
-        if (is_free(grid.constraint[v], c)) unknown_[v][c] = count_++;
-    half_weight_.resize(mesh.halfedge_count());
-    for (int h = 0; h < mesh.halfedge_count(); ++h) half_weight_[h] = edge_weight(mesh, h);
+        if (moves[v] && is_free(grid.constraint[v], c)) unknown_[v][c] = count_++;
   }
 
   /// Adds the best change to the values. \param stiffness  #F, multiplies a face's weight
@@ -49,13 +35,10 @@ class SlipProblem {
     if (count_ == 0) return;
     assemble(stiffness, grid);
     context.checkpoint(0.6);
-    if (!factored_) {
-      factor_ = std::make_unique<SparseFactor>(lower_, places(), context);
-      if (!factor_->factorize(lower_, 0, context)) return;
-      factored_ = true;
-    }
+    SparseFactor factor(lower_, places(), context);
+    if (!factor.factorize(lower_, 0, context)) return;
     context.checkpoint(0.7);
-    const Eigen::VectorXd change = improved(factor_->solve(right_side_), context);
+    const Eigen::VectorXd change = factor.solve(right_side_);
     if (!change.allFinite()) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
@@ -68,6 +51,8 @@ class SlipProblem {
            (constraint == GridConstraint::kIsolineV && coordinate == 0) ||
            (constraint == GridConstraint::kIsolineU && coordinate == 1);
   }
+
+  bool is_moved(int v) const { return unknown_[v][0] >= 0 || unknown_[v][1] >= 0; }
 
   std::vector<Vector3> places() const {
     std::vector<Vector3> places(count_);
@@ -83,11 +68,11 @@ class SlipProblem {
     entries_.clear();
     for (int h = 0; h < mesh_.halfedge_count(); ++h) {
       const int o = mesh_.opposite(h);
-      if (o > h) continue;
-      double weight = half_weight_[h] * stiffness[h / 3];
+      if (o > h || !(is_moved(mesh_.from(h)) || is_moved(mesh_.to(h)))) continue;
+      double weight = edge_weight(mesh_, h) * stiffness[h / 3];
       Vector2 wanted = weight * measure_.along[h];
       if (o >= 0) {
-        const double other = half_weight_[o] * stiffness[o / 3];
+        const double other = edge_weight(mesh_, o) * stiffness[o / 3];
         wanted -= other * turned(measure_.along[o], frames_.matching[o]);
         weight += other;
       }
@@ -103,9 +88,9 @@ class SlipProblem {
                 Eigen::VectorXd& diagonal) {
     const int p = mesh_.from(h), q = mesh_.to(h);
     for (int c = 0; c < 2; ++c) {
-      const Component at_p = component(c, grid.corner_turn[h]),
-                      at_q = component(c, grid.corner_turn[TriangleMesh::next(h)]);
-      const int i = unknown_[p][at_p.index], j = unknown_[q][at_q.index];
+      const TurnedCoordinate at_p = turned_coordinate(c, grid.corner_turn[h]),
+                             at_q = turned_coordinate(c, grid.corner_turn[TriangleMesh::next(h)]);
+      const int i = unknown_[p][at_p.source], j = unknown_[q][at_q.source];
       if (i >= 0) {
         diagonal[i] += weight;
         right_side_[i] -= at_p.sign * pull[c];
@@ -123,53 +108,49 @@ class SlipProblem {
     }
   }
 
-  /// Conjugate gradients from x, preconditioned by the first round's factorization: stiffer spots are few and
-  /// small, so that a handful of steps replaces a new factorization.
-  Eigen::VectorXd improved(Eigen::VectorXd x, const RunContext& context) const {
-    Eigen::VectorXd applied = lower_.selfadjointView<Eigen::Lower>() * x;
-    Eigen::VectorXd residual = right_side_ - applied;
-    const double goal = kResidual * right_side_.norm();
-    if (!(residual.norm() > goal)) return x;
-    Eigen::VectorXd solved = factor_->solve(residual), direction = solved;
-    double slope = residual.dot(solved);
-    for (int step = 0; step < kMostSteps && residual.norm() > goal && slope > 0; ++step) {
-      applied = lower_.selfadjointView<Eigen::Lower>() * direction;
-      const double curvature = direction.dot(applied);
-      if (!(curvature > 0)) break;
-      x += (slope / curvature) * direction;
-      residual -= (slope / curvature) * applied;
-      solved = factor_->solve(residual);
-      const double next = residual.dot(solved);
-      direction = solved + (next / slope) * direction;
-      slope = next;
-      context.checkpoint(0.7);
-    }
-    return x;
-  }
-
   const TriangleMesh& mesh_;
   const FrameField& frames_;
   const GridMeasure& measure_;
   std::vector<IntVector2> unknown_;  ///< #V: index of u and of v, or -1
   int count_ = 0;
-  std::vector<double> half_weight_;
   std::vector<Eigen::Triplet<double>> entries_;
   SparseMatrix lower_;
   Eigen::VectorXd right_side_;
-  std::unique_ptr<SparseFactor> factor_;
-  bool factored_ = false;
 };
 
-/// Multiplies the weights of folded faces and of two rings of neighbours.
-void stiffen(const TriangleMesh& mesh, std::vector<char> marked, std::vector<double>& stiffness) {
-  for (int ring = 0; ring < 2; ++ring) {
-    std::vector<char> grown = marked;
-    for (int h = 0; h < mesh.halfedge_count(); ++h)
-      if (mesh.opposite(h) >= 0 && marked[h / 3]) grown[mesh.opposite(h) / 3] = 1;
-    marked = std::move(grown);
+/// Marks the neighbours of marked faces, ring after ring.
+std::vector<char> grown(const TriangleMesh& mesh, std::vector<char> marked, int rings) {
+  std::vector<int> border, next;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (marked[f]) border.push_back(f);
+  for (int ring = 0; ring < rings; ++ring, border.swap(next)) {
+    next.clear();
+    for (const int f : border)
+      for (int h = 3 * f; h < 3 * f + 3; ++h) {
+        const int g = mesh.opposite(h) / 3;
+        if (mesh.opposite(h) < 0 || marked[g]) continue;
+        marked[g] = 1;
+        next.push_back(g);
+      }
   }
+  return marked;
+}
+
+/// Multiplies the weights of folded faces and of two rings of neighbours.
+void stiffen(const TriangleMesh& mesh, const std::vector<char>& folded, std::vector<double>& stiffness) {
+  const std::vector<char> marked = grown(mesh, folded, 2);
   for (int f = 0; f < mesh.face_count(); ++f)
     if (marked[f]) stiffness[f] = std::min(kStiffest, stiffness[f] * kStiffer);
+}
+
+/// Corners of the faces around folds as far as stiffer ones make a difference.
+std::vector<char> vertices_around(const TriangleMesh& mesh, const std::vector<char>& folded) {
+  constexpr int kRings = 12;
+  const std::vector<char> marked = grown(mesh, folded, kRings);
+  std::vector<char> near(mesh.vertex_count(), 0);
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (marked[h / 3]) near[mesh.from(h)] = 1;
+  return near;
 }
 
 /// Folds along features count more: both sides of a curve suffer.
@@ -202,19 +183,21 @@ GridFolds find_folds(const WorkingSurface& surface, const FrameField& frames, co
 
 GridFolds spread_slip(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                       int stiffening_rounds, const RunContext& context, LiftedGrid& grid) {
-  std::vector<double> stiffness(surface.mesh.face_count(), 1.0);
-  SlipProblem problem(surface.mesh, frames, measure, grid);
+  const TriangleMesh& mesh = surface.mesh;
+  std::vector<double> stiffness(mesh.face_count(), 1.0);
+  std::vector<char> moves(mesh.vertex_count(), 1);
   GridFolds best;
   std::vector<Vector2> best_value;
   for (int round = 0; round <= stiffening_rounds; ++round) {
-    problem.solve(stiffness, context, grid);
+    SlipProblem(mesh, frames, measure, grid, moves).solve(stiffness, context, grid);
     const GridFolds folds = find_folds(surface, frames, measure, grid);
     if (round == 0 || badness(folds) < badness(best)) {
       best = folds;
       best_value = grid.value;
     }
     if (badness(folds) == 0) break;
-    stiffen(surface.mesh, folds.face, stiffness);
+    stiffen(mesh, folds.face, stiffness);
+    moves = vertices_around(mesh, folds.face);
   }
   grid.value = std::move(best_value);
   return best;

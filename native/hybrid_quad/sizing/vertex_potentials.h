@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hybrid_quad/frame_field/frame_field.h"
+#include "hybrid_quad/sizing/correction_costs.h"
+#include "hybrid_quad/sizing/disk_cut.h"
+
+namespace hybrid_quad {
+
+/// The correction for small lambda: on a surface cut to disks the corrected frames are the gradients of two functions, so
+/// that edges measure the same from both sides but where they are cut, and there to within lambda. One sixth of the
+/// unknowns of the frames, a third of EdgeMultipliers', and couplings between neighbouring vertices only.
+class VertexPotentials {
+ public:
+  VertexPotentials(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);
+
+  /// \param x  gets #F matrices
+  void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) const;
+
+ private:
+  /// Row X_r of a face's correction is `map` times what function r grows by along the face's first two edges.
+  using Gradient = Eigen::Matrix2d;
+  /// A difference of values at nodes, one of them for each coordinate, that should vanish.
+  struct Spring {
+    std::array<int, 4> unknown;
+    std::array<double, 4> coefficient;
+    double softness;
+  };
+
+  int unknown(int corner, int row) const { return 2 * cut_.node[corner] + row; }
+  void add_springs(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);
+
+  DiskCut cut_;
+  std::vector<Gradient> gradient_;  ///< #F
+  std::vector<Spring> springs_;
+  std::vector<Vector3> place_;  ///< per unknown
+};
+
+}  // namespace hybrid_quad
