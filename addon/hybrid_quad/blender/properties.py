@@ -291,7 +291,7 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         default=0.0,
         min=0.0,
         soft_max=3600.0,
-        precision=0,
+        precision=2,  # with less, 90 seconds read as 2 minutes
         step=1000,
         subtype="TIME_ABSOLUTE",
         unit="TIME_ABSOLUTE",
