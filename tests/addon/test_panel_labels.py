@@ -12,8 +12,8 @@ import pytest
 from hybrid_quad.blender import panels
 from scenes import add_sphere
 
-# Pixels that stand beside a value, and beside the box of a switch, in panels inside a panel: as seen in Blender 3.4.
-VALUE_LABEL, SWITCH_LABEL = 58, 72
+# Pixels that stand beside a value, and beside the box of a switch, in panels inside a panel: as seen in Blender 3.4 and 5.2.
+VALUE_LABEL, SWITCH_LABEL = 58, 75
 
 
 class Layout:

@@ -15,6 +15,7 @@ _SHORT = {
     "custom_normals": "Normals",
     "bevel_weights": "Bevel Weight",
     "freestyle_marks": "Freestyle",
+    "vertex_groups": "Vertex Group",
     "custom_properties": "Properties",
 }
 
