@@ -14,6 +14,7 @@ from scenes import add_sphere
 
 # Pixels that stand beside a value, and beside the box of a switch, in panels inside a panel: as seen in Blender 3.4 and 5.2.
 VALUE_LABEL, SWITCH_LABEL = 58, 75
+CHOICE = 74  # what a list shows of the one that is chosen
 
 
 class Layout:
@@ -34,6 +35,8 @@ class Layout:
     def prop(self, data: Any, name: str, *, text: str | None = None, toggle: bool = False, **_kwargs: Any) -> None:
         prop = data.bl_rna.properties[name]
         is_switch = prop.type == "BOOLEAN" and not toggle
+        if prop.type == "ENUM" and not prop.is_enum_flag:
+            self._labels.extend((item.name, CHOICE) for item in prop.enum_items)
         self._labels.append((prop.name if text is None else text, SWITCH_LABEL if is_switch else VALUE_LABEL))
 
     def prop_search(self, data: Any, name: str, *_where: Any, text: str | None = None) -> None:
