@@ -53,6 +53,10 @@ def test_a_preset_of_the_user_is_kept_and_forgotten(tmp_path, monkeypatch):
     assert values(other) != kept
     run_preset(path)
     assert values(other) == kept and not other.hybrid_quad.transfer.use_seams
+    # Blender itself looks in the user's folders alone.
+    monkeypatch.setattr(bpy.utils, "preset_find", lambda *_args, **_kwargs: str(path))
+    assert bpy.ops.object.hybrid_quad_preset_add(name="Mine", remove_name=True) == {"FINISHED"}
+    assert not path.exists()
 
 
 def _made(folder):

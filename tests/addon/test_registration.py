@@ -61,6 +61,21 @@ def test_every_property_has_a_tooltip():
                 assert len(prop.description) > 10, f"{cls.__name__}.{prop.identifier}"
 
 
+def test_the_tooltip_of_a_number_says_what_it_counts():
+    """In words, beside what Blender itself shows with a unit: lengths and angles."""
+    words = ("number", "quads", "pixels", "seconds", "megabytes", "rows", "times", "level", "(0)", "world space")
+    numbers = 0
+    for cls in registration.CLASSES:
+        for prop in cls.bl_rna.properties:
+            if prop.type not in ("INT", "FLOAT") or prop.identifier not in getattr(cls, "__annotations__", {}):
+                continue
+            numbers += 1
+            text = prop.description.lower()
+            is_shown = prop.type == "FLOAT" and prop.unit in ("LENGTH", "ROTATION")
+            assert is_shown or any(word in text for word in words), f"{cls.__name__}.{prop.identifier}: {text}"
+    assert numbers > 15
+
+
 def test_every_operator_has_a_tooltip_without_a_full_stop():
     for cls in registration.CLASSES:
         if issubclass(cls, bpy.types.Operator):

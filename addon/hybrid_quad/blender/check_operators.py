@@ -26,10 +26,13 @@ class _CheckOperator(ActiveMeshOperator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             source = read_source(context.object, context.evaluated_depsgraph_get())
-            return self._act(context.object, source, check(source.vertices, source.polygons, edges=source.edges))
+            ended = self._act(context.object, source, check(source.vertices, source.polygons, edges=source.edges))
         except Exception as error:
             self.report({"ERROR"}, message_of(error))
             return {"CANCELLED"}
+        if context.area is not None:  # from a menu, nothing else has the list drawn anew
+            context.area.tag_redraw()
+        return ended
 
     def _act(self, obj: bpy.types.Object, source: MeshSource, defects: list[Defect]) -> set[str]:
         raise NotImplementedError

@@ -34,7 +34,6 @@ class VIEW3D_PT_hybrid_quad_check(HybridQuadPanel, bpy.types.Panel):
             line = column.split(factor=_TEXT)
             draw_text(line, describe_row(row), "INFO" if row["repairable"] else "ERROR", share=_TEXT)
             if row["elements"]:
-                name, icon = OBJECT_OT_hybrid_quad_select_defect.bl_idname, "RESTRICT_SELECT_OFF"
-                line.operator(name, text="Select", icon=icon).code = row["code"]
+                line.operator(OBJECT_OT_hybrid_quad_select_defect.bl_idname, text="Select").code = row["code"]
         if rows:
             layout.operator(OBJECT_OT_hybrid_quad_repair.bl_idname, icon="MODIFIER")

@@ -73,8 +73,8 @@ class VIEW3D_PT_hybrid_quad_flow_advanced(HybridQuadPanel, bpy.types.Panel):
         settings = context.object.hybrid_quad
         column = layout.column()
         column.prop(settings, "anisotropy")
-        column.prop(settings, "narrow_quads")
-        column.prop(settings, "fit_limit_surface")
+        column.prop(settings, "narrow_quads", text="Narrow")
+        column.prop(settings, "fit_limit_surface", text="Fit Limit")
 
 
 class VIEW3D_PT_hybrid_quad_symmetry(HybridQuadPanel, bpy.types.Panel):

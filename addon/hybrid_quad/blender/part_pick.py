@@ -10,7 +10,7 @@ from .operators import PART_MODES, problem_of
 from .painting.paint_surface import PaintSurface
 from .part_source import knows_face_sets
 
-_NO_FACE_SETS = "Add-ons see face sets from Blender 3.5 on; hide the other faces and choose Visible Faces"
+_NO_FACE_SETS = "Add-ons see face sets from Blender 3.5 on; hide the other faces and choose Visible"
 
 
 class OBJECT_OT_hybrid_quad_pick_face_set(bpy.types.Operator):

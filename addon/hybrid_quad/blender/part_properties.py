@@ -6,16 +6,16 @@ import bpy
 
 REGIONS = (
     ("WHOLE", "Whole Mesh", "Remesh all faces, with visible modifiers applied"),
-    ("SELECTED", "Selected Faces", "Remesh the faces that are selected in Edit Mode"),
-    ("VISIBLE", "Visible Faces", "Remesh the faces that are not hidden in Edit Mode or Sculpt Mode"),
+    ("SELECTED", "Selected", "Remesh the faces that are selected in Edit Mode"),
+    ("VISIBLE", "Visible", "Remesh the faces that are not hidden in Edit Mode or Sculpt Mode"),
     ("FACE_SET", "Face Set", "Remesh one face set of Sculpt Mode (from Blender 3.5 on)"),
     ("MASK", "Mask", "Remesh the faces whose vertices are masked in Sculpt Mode by half or more"),
     ("ATTRIBUTE", "Attribute", "Remesh the faces at which a Boolean attribute of faces is true"),
 )
 ODD_BORDERS = (
     ("REFUSE", "Refuse", "Say where a border has an odd number of edges, which quads cannot fill"),
-    ("GROW", "Add a Triangle", "Remesh one triangle more, beside each border with an odd number of edges"),
-    ("SHRINK", "Leave Out a Triangle", "Remesh one triangle less, at each border with an odd number of edges"),
+    ("GROW", "Grow", "Remesh one triangle more, beside each border with an odd number of edges"),
+    ("SHRINK", "Shrink", "Remesh one triangle less, at each border with an odd number of edges"),
 )
 
 

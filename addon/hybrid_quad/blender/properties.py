@@ -86,7 +86,8 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     chord_error: bpy.props.FloatProperty(
         name="Chord Error",
-        description="Largest distance between quads and the surface to aim at; small quads where it bends, large ones elsewhere",
+        description="Largest distance between quads and the surface to aim at, in the scene's units and with the object's scale "
+        "counted in. Small quads where it bends, large ones elsewhere",
         default=0.01,
         min=1e-7,
         soft_max=1.0,
@@ -181,7 +182,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         default=set(),
     )
     guide_marks_strength: bpy.props.FloatProperty(
-        name="Edge Strength", description="How strongly quads follow guide edges", **STRENGTH
+        name="Edge Strength",
+        description="How strongly quads follow guide edges, from not at all (0) to fully (1)",
+        **STRENGTH,
     )
     # No poll, which would crash Blender 4.2 as it exits.
     guide_object: bpy.props.PointerProperty(
@@ -201,7 +204,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         default="DIRECTION",
     )
     guide_objects_strength: bpy.props.FloatProperty(
-        name="Object Strength", description="How strongly quads follow guide objects", **STRENGTH
+        name="Object Strength",
+        description="How strongly quads follow guide objects, from not at all (0) to fully (1)",
+        **STRENGTH,
     )
     use_guide_annotations: bpy.props.BoolProperty(
         name="Annotations",
@@ -212,7 +217,9 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
         name="Kind", description="What annotation strokes are for", items=GUIDE_KINDS, default="DIRECTION"
     )
     guide_annotations_strength: bpy.props.FloatProperty(
-        name="Annotation Strength", description="How strongly quads follow annotation strokes", **STRENGTH
+        name="Annotation Strength",
+        description="How strongly quads follow annotation strokes, from not at all (0) to fully (1)",
+        **STRENGTH,
     )
     guide_radius: bpy.props.FloatProperty(
         name="Radius",
@@ -233,7 +240,7 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     adaptivity: bpy.props.FloatProperty(
         name="Adaptivity",
-        description="Smaller quads where the surface bends more; 0: all of one size",
+        description="From quads of one size (0) to smaller ones where the surface bends (1), with a third to twice the usual edge",
         default=NUMBERS["adaptivity"],
         min=0.0,
         max=1.0,
@@ -249,7 +256,7 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     anisotropy: bpy.props.FloatProperty(
         name="Stretch",
-        description="Longest ratio of a quad's sides, along directions in which the surface bends less; 1: squares",
+        description="How many times longer than wide quads may be, along directions in which the surface bends less. 1: squares",
         default=NUMBERS["anisotropy"],
         min=1.0,
         soft_max=4.0,
@@ -280,18 +287,18 @@ class HybridQuadSettings(bpy.types.PropertyGroup):
     )
     time_limit: bpy.props.FloatProperty(
         name="Time",
-        description="End a run that takes longer than this, and leave everything as it is. 0: no limit",
+        description="End a run that takes more seconds than this, and leave everything as it is. 0: no limit",
         default=0.0,
         min=0.0,
         soft_max=3600.0,
-        precision=0,
+        precision=2,  # with less, 90 seconds read as 2 minutes
         step=1000,
         subtype="TIME_ABSOLUTE",
         unit="TIME_ABSOLUTE",
     )
     memory_limit: bpy.props.IntProperty(
         name="Memory (MB)",
-        description="End a run whose process needs more memory than this, and leave everything as it is. 0: no limit",
+        description="End a run whose process needs more megabytes of memory than this, and leave everything as it is. 0: no limit",
         default=0,
         min=0,
         soft_max=65536,

@@ -48,7 +48,8 @@ DENSITY_ACTIONS = (
 )
 STRENGTH = {
     "name": "Strength",
-    "description": "How strongly a stroke acts in the brush's middle. For directions: how strongly quads follow it",
+    "description": "How strongly a stroke acts in the brush's middle, from not at all (0) to fully (1). For directions: how strongly "
+    "quads follow it",
     "default": 1.0,
     "min": 0.0,
     "max": 1.0,
@@ -106,7 +107,11 @@ class HybridQuadStrokePoint(bpy.types.PropertyGroup):
         name="Location", description="In world space, on or near the surface", size=3, subtype="XYZ"
     )
     pressure: bpy.props.FloatProperty(
-        name="Pressure", description="How hard the pen is pressed", default=1.0, min=0.0, max=1.0
+        name="Pressure",
+        description="How hard the pen is pressed, from not at all (0) to fully (1)",
+        default=1.0,
+        min=0.0,
+        max=1.0,
     )
     is_start: bpy.props.BoolProperty(
         name="Is Start",
