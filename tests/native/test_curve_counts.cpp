@@ -139,6 +139,20 @@ TEST(CurveCounts, DislocationsLeaveCurvesMostOfTheirEdges) {
   }
 }
 
+TEST(CurveCounts, BentCurvesKeepWhatTheirBendsTake) {
+  // Eight edges around the rim of a tube: seven tenths of them, five, would be a quarter of an edge from it.
+  constexpr double kPi = 3.14159265358979323846;
+  const double h = 2 * kPi / 8;
+  const WorkingSurface surface = test::surface_of(test::open_cylinder(48, 16), h);
+  const GridMeasure measure = measure_edges(surface, test::smooth_frames(surface, h));
+  const std::vector<CountRange> ranges = allowed_counts(surface, measure);
+  ASSERT_EQ(ranges.size(), 2u);
+  for (const CountRange& range : ranges) {
+    EXPECT_GE(range.fewest, 6);
+    EXPECT_LE(range.fewest, 8);
+  }
+}
+
 TEST(CurveCounts, AreTheLiftsAndStayWhileDislocationsMove) {
   for (int seed = 0; seed < 3; ++seed) {
     const WorkingSurface surface = counted_box(seed);

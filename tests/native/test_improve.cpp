@@ -508,6 +508,35 @@ TEST(Improve, ClosedCurves) {
   expect_on_features(quads, surface);
 }
 
+TEST(Improve, ChordsOfACoarseRingAreNearerThanEvenOnes) {
+  // Twelve edges around seventeen sides: where all are as long, some cut a corner in the middle.
+  const Surface surface(test::open_cylinder(17, 12));
+  QuadMesh quads = tube(12, 4);
+  for (Vector3& p : quads.positions) p = surface.index->nearest(p).position;
+  bind(quads, surface);
+  ASSERT_EQ(quads.feature_edges.size(), 24u);
+  improve(quads, surface);
+  EXPECT_TRUE(violations_of(quads).empty());
+  EXPECT_GT(shape_quality(quads).scaled_jacobian_min, 0.85);
+  expect_on_features(quads, surface);
+  for (int c = 0; c < 2; ++c) {
+    std::vector<Vector3> points;
+    for (const int v : surface.features.curves[c].vertices) points.push_back(surface.mesh.position(v));
+    const CurveGeometry curve(points, true);
+    std::vector<std::array<Vector3, 2>> edges, even;
+    for (const auto& e : quads.feature_edges)
+      if (e.curve == c) edges.push_back({quads.positions[e.a], quads.positions[e.b]});
+    for (int i = 0; i < 12; ++i) even.push_back({curve.at(curve.length() * i / 12), curve.at(curve.length() * (i + 1) / 12)});
+    const auto farthest = [&](std::vector<std::array<Vector3, 2>> segments) {
+      const SegmentIndex index(std::move(segments));
+      double most = 0;
+      for (const Vector3& p : points) most = std::max(most, index.nearest(p).squared_distance);
+      return std::sqrt(most);
+    };
+    EXPECT_LT(farthest(edges), 0.95 * farthest(even));
+  }
+}
+
 TEST(Improve, NothingBadFromDegenerateInput) {
   const Surface surface(test::box(3));
   QuadMesh empty;

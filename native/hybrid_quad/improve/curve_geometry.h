@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "hybrid_quad/base/types.h"
@@ -22,6 +23,9 @@ class CurveGeometry {
 
   double normalized(double s) const;
   Vector3 at(double s) const;
+  /// Calls visit(point) for the points of the polyline between two arc lengths.
+  template <class Visit>
+  void for_points_between(double from, double to, const Visit& visit) const;
   Vector3 tangent(double s) const;  ///< unit, in the curve's direction; zero on a curve without length
 
   /// Weighs arc length by sqrt(1 + weight h curvature), so that equal weighted lengths have about equal chord error.
@@ -42,5 +46,22 @@ class CurveGeometry {
   std::vector<double> arc_, weighted_;
   bool closed_;
 };
+
+template <class Visit>
+void CurveGeometry::for_points_between(double from, double to, const Visit& visit) const {
+  const int segments = static_cast<int>(points_.size()) - 1;
+  const double turns = closed_ && length() > 0 ? std::floor(from / length()) : 0;
+  double offset = turns * length();
+  for (int i = segment_at(from - offset) + 1;; ++i) {
+    if (i > segments) {
+      if (!closed_ || !(length() > 0)) return;
+      i -= segments;
+      offset += length();
+    }
+    const double s = offset + arc_[i];
+    if (s >= to) return;
+    if (s > from) visit(points_[i]);
+  }
+}
 
 }  // namespace hybrid_quad

@@ -9,6 +9,7 @@
 #include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/spread_along_bends.h"
 #include "hybrid_quad/improve/untangle.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/wedge_template.h"
@@ -89,6 +90,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     if (moves > 0) smoother.smooth(kSweepsAfter, context);
     report.connectivity_moves += moves;
   }
+  if (options.rings == nullptr) spread_along_bends(piece, smoother, context);
   if (options.fit) fit_to_input(piece, smoother, context);
   report.inverted_after = untangle(piece, smoother, context);
   // What relaxing alone can't untangle may come free with other neighbours.

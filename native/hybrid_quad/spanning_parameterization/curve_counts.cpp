@@ -28,6 +28,41 @@ std::map<int, std::vector<ParityLink>> parity_links(const FeatureGraph& features
   return links;
 }
 
+/// How many chords a curve takes, each no farther from it than a part of a quad edge: one as long as sqrt(8 d r) is d from an arc of
+/// radius r. Turns are those of pieces half an edge long.
+/// \param edge  of usual length (scene units)  \param deviation  in edges
+double chords_for_bends(const TriangleMesh& mesh, const FeatureCurve& curve, double edge, double deviation) {
+  const double step = edge / 2;
+  std::vector<Vector3> points{mesh.position(curve.vertices.front())};
+  double walked = 0;
+  for (std::size_t i = 1; i < curve.vertices.size(); ++i) {
+    walked += (mesh.position(curve.vertices[i]) - mesh.position(curve.vertices[i - 1])).norm();
+    if (walked < step) continue;
+    points.push_back(mesh.position(curve.vertices[i]));
+    walked = 0;
+  }
+  if (curve.closed && (points.back() - points.front()).norm() < step) points.pop_back();
+  const std::size_t count = points.size();
+  double chords = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!curve.closed && (i == 0 || i + 1 == count)) continue;
+    const Vector3 in = points[i] - points[(i + count - 1) % count], out = points[(i + 1) % count] - points[i];
+    const double turn = std::atan2(in.cross(out).norm(), in.dot(out));
+    chords += std::sqrt(turn * 0.5 * (in.norm() + out.norm()) / (8 * deviation * edge));
+  }
+  return chords;
+}
+
+/// That of quads that are all alike.
+double usual_edge(const TriangleMesh& mesh, const GridMeasure& measure) {
+  double quads = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const Vector2 &a = measure.along[3 * f], &b = measure.along[3 * f + 1];
+    quads += 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+  }
+  return quads > 0 ? std::sqrt(mesh.total_area() / quads) : 0;
+}
+
 }  // namespace
 
 CornerSigns corner_signs(const FeatureGraph& features, const std::vector<PhasePair>& psi) {
@@ -101,16 +136,21 @@ void settle_curve_counts(const WorkingSurface& surface, const FrameField& frames
 
 std::vector<CountRange> allowed_counts(const WorkingSurface& surface, const GridMeasure& measure) {
   constexpr double kShorter = 0.7, kLonger = 1.5;
+  constexpr double kDeviation = 0.12;  // of chords from a bend, in edges
   const TriangleMesh& mesh = surface.mesh;
   const auto& curves = surface.features.curves;
   const bool any_asked = std::any_of(curves.begin(), curves.end(), [](const FeatureCurve& c) { return c.asked_count > 0; });
   std::vector<double> length(curves.size(), 0.0);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     if (measure.axis[h] >= 0 && h > mesh.opposite(h)) length[surface.features.halfedge_curve[h]] += measure.along[h].norm();
+  const double edge = usual_edge(mesh, measure);
   std::vector<CountRange> ranges;
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const int most = any_asked ? static_cast<int>(kLonger * length[c]) + 2 : std::numeric_limits<int>::max();
-    ranges.push_back({std::max(fewest_curve_edges(curves[c]), static_cast<int>(kShorter * length[c])), most});
+    // Where bends take more edges than that, as many as they take, if frames measure so many.
+    const double bends = edge > 0 ? std::min(length[c], chords_for_bends(mesh, curves[c], edge, kDeviation)) : 0;
+    const int fewest = static_cast<int>(std::max(kShorter * length[c], bends));
+    ranges.push_back({std::max(fewest_curve_edges(curves[c]), fewest), most});
     if (curves[c].asked_count > 0) ranges.back() = {curves[c].asked_count, curves[c].asked_count};
   }
   return ranges;

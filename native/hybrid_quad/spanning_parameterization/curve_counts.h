@@ -29,9 +29,9 @@ struct CountRange {
   int fewest, most;
 };
 
-/// #curves: what moving dislocations may make of each. No fewer than seven tenths of what the frames measure: chords of a bent
-/// curve would leave it. Where there are asked counts, exactly these, and for the others not many more than the frames measure
-/// either: they would pay for the asked ones.
+/// #curves: what moving dislocations may make of each. No fewer than seven tenths of what the frames measure, nor than it takes for
+/// chords within .12 edges of its bends, where frames measure so many. Where there are asked counts, exactly these, and for the others
+/// not many more than the frames measure either: they would pay for the asked ones.
 std::vector<CountRange> allowed_counts(const WorkingSurface& surface, const GridMeasure& measure);
 
 /// #F: whether a face is within a few quads of a curve with an asked count; empty where there is no such curve.
