@@ -27,13 +27,12 @@ class CountSettling {
   CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole,
                 ComponentResult& result, const RunContext& context)
       : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context),
-        now_(measured(result.mesh)) {
+        now_(measured(result.mesh)), error_before_(now_.error) {
     for (const FeatureCurve& curve : plan.features.curves) counted_.push_back(curve.asked_count > 0);
   }
 
   void run() {
     if (!is_far()) return;
-    const int before = now_.quads;
     int rows = 0;
     for (int i = 0, last = -1; i < kRowRounds && is_far() && rows != last && may_improve(); ++i) {
       last = rows;
@@ -42,7 +41,7 @@ class CountSettling {
     bool is_rough = false;
     for (int i = 0; i < kRounds && is_far() && change_quads(); ++i) is_rough = true;
     if (is_rough) improve_again();
-    if (now_.quads == before) return;
+    if (!any_taken_) return;
     result_.repairs.fitted_rows += rows;
     result_.flawed_quads = now_.flawed;
     result_.doubtful_quads = now_.doubtful;
@@ -65,13 +64,16 @@ class CountSettling {
   bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
   double tolerance() const { return std::max(1.0, kAim * wanted_); }
 
+  /// What has fewer flawed quads may be as far off as what settling began with: a number a hundredth nearer is not worth one of them.
   /// \returns whether `mesh` is sound and no worse; then it is the result
   bool take(QuadMesh mesh, double most_error) {
     if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
     const Measured then = measured(mesh);
+    if (then.flawed < now_.flawed) most_error = std::max(most_error, error_before_);
     if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed)
       return false;
     now_ = then;
+    any_taken_ = true;
     result_.mesh = std::move(mesh);
     return true;
   }
@@ -131,6 +133,8 @@ class CountSettling {
   std::vector<char> counted_;
   int improvements_ = 0;
   Measured now_;
+  double error_before_;  ///< of what settling began with
+  bool any_taken_ = false;
 };
 
 }  // namespace
