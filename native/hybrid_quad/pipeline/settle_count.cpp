@@ -27,7 +27,7 @@ class CountSettling {
   CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole,
                 ComponentResult& result, const RunContext& context)
       : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context),
-        now_(measured(result.mesh)), error_before_(now_.error) {
+        now_(measured(result.mesh)), error_at_first_(now_.error) {
     for (const FeatureCurve& curve : plan.features.curves) counted_.push_back(curve.asked_count > 0);
   }
 
@@ -49,12 +49,7 @@ class CountSettling {
   }
 
  private:
-  struct Measured {
-    int quads = 0, flawed = 0, doubtful = 0, missed = 0;
-    double error = 0;  ///< | log(quads / asked) |
-  };
-
-  Measured measured(const QuadMesh& mesh) const {
+  SettledState measured(const QuadMesh& mesh) const {
     const int quads = static_cast<int>(mesh.quads.size());
     return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()),
             static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()), missed_counts(plan_.features, mesh),
@@ -64,14 +59,11 @@ class CountSettling {
   bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
   double tolerance() const { return std::max(1.0, kAim * wanted_); }
 
-  /// What has fewer flawed quads may be as far off as what settling began with: a number a hundredth nearer is not worth one of them.
   /// \returns whether `mesh` is sound and no worse; then it is the result
   bool take(QuadMesh mesh, double most_error) {
     if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
-    const Measured then = measured(mesh);
-    if (then.flawed < now_.flawed) most_error = std::max(most_error, error_before_);
-    if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed)
-      return false;
+    const SettledState then = measured(mesh);
+    if (!may_take_place_of(then, now_, most_error, error_at_first_)) return false;
     now_ = then;
     any_taken_ = true;
     result_.mesh = std::move(mesh);
@@ -132,12 +124,17 @@ class CountSettling {
   const RunContext& context_;
   std::vector<char> counted_;
   int improvements_ = 0;
-  Measured now_;
-  double error_before_;  ///< of what settling began with
+  SettledState now_;
+  double error_at_first_;
   bool any_taken_ = false;
 };
 
 }  // namespace
+
+bool may_take_place_of(const SettledState& then, const SettledState& now, double most_error, double error_at_first) {
+  if (then.flawed > now.flawed || then.doubtful > now.doubtful || then.missed > now.missed) return false;
+  return then.error <= (then.flawed < now.flawed ? std::max(most_error, error_at_first) : most_error);
+}
 
 void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                   const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
