@@ -5,6 +5,7 @@
 
 #include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/pipeline/remesh.h"
+#include "hybrid_quad/pipeline/settle_count.h"
 #include "support/meshes.h"
 #include "support/quad_complexes.h"
 
@@ -65,6 +66,17 @@ TEST(SettleCount, SaysWhereANumberIsImpossible) {
   EXPECT_TRUE(violations_of(result.mesh).empty());
   const auto& warnings = result.report.warnings;
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) { return w.find("fewer than 60") != std::string::npos; }));
+}
+
+/// Of 981 quads where 94 were wanted 736 are left, with four flawed; improved, they are 743 and sound.
+TEST(SettleCount, FewerFlawedQuadsAreWorthMoreThanANearerNumber) {
+  const auto state = [](int quads, int flawed) { return SettledState{quads, flawed, flawed, 0, std::abs(std::log(quads / 94.0))}; };
+  const double at_first = state(981, 6).error, now = state(736, 4).error;
+  EXPECT_TRUE(may_take_place_of(state(743, 0), state(736, 4), now, at_first));
+  EXPECT_FALSE(may_take_place_of(state(990, 0), state(736, 4), now, at_first)) << "farther off than before";
+  EXPECT_FALSE(may_take_place_of(state(743, 4), state(736, 4), now, at_first));
+  EXPECT_FALSE(may_take_place_of(state(700, 5), state(736, 4), now, at_first));
+  EXPECT_TRUE(may_take_place_of(state(700, 4), state(736, 4), now, at_first));
 }
 
 TEST(SettleCount, HandlesTakeFewQuads) {

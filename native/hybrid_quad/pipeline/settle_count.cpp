@@ -27,13 +27,12 @@ class CountSettling {
   CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole,
                 ComponentResult& result, const RunContext& context)
       : plan_(plan), wanted_(wanted), finishing_(finishing), whole_(whole), result_(result), context_(context),
-        now_(measured(result.mesh)) {
+        now_(measured(result.mesh)), error_at_first_(now_.error) {
     for (const FeatureCurve& curve : plan.features.curves) counted_.push_back(curve.asked_count > 0);
   }
 
   void run() {
     if (!is_far()) return;
-    const int before = now_.quads;
     int rows = 0;
     for (int i = 0, last = -1; i < kRowRounds && is_far() && rows != last && may_improve(); ++i) {
       last = rows;
@@ -42,7 +41,7 @@ class CountSettling {
     bool is_rough = false;
     for (int i = 0; i < kRounds && is_far() && change_quads(); ++i) is_rough = true;
     if (is_rough) improve_again();
-    if (now_.quads == before) return;
+    if (!any_taken_) return;
     result_.repairs.fitted_rows += rows;
     result_.flawed_quads = now_.flawed;
     result_.doubtful_quads = now_.doubtful;
@@ -50,12 +49,7 @@ class CountSettling {
   }
 
  private:
-  struct Measured {
-    int quads = 0, flawed = 0, doubtful = 0, missed = 0;
-    double error = 0;  ///< | log(quads / asked) |
-  };
-
-  Measured measured(const QuadMesh& mesh) const {
+  SettledState measured(const QuadMesh& mesh) const {
     const int quads = static_cast<int>(mesh.quads.size());
     return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()),
             static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()), missed_counts(plan_.features, mesh),
@@ -68,10 +62,10 @@ class CountSettling {
   /// \returns whether `mesh` is sound and no worse; then it is the result
   bool take(QuadMesh mesh, double most_error) {
     if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
-    const Measured then = measured(mesh);
-    if (then.error > most_error || then.flawed > now_.flawed || then.doubtful > now_.doubtful || then.missed > now_.missed)
-      return false;
+    const SettledState then = measured(mesh);
+    if (!may_take_place_of(then, now_, most_error, error_at_first_)) return false;
     now_ = then;
+    any_taken_ = true;
     result_.mesh = std::move(mesh);
     return true;
   }
@@ -130,10 +124,17 @@ class CountSettling {
   const RunContext& context_;
   std::vector<char> counted_;
   int improvements_ = 0;
-  Measured now_;
+  SettledState now_;
+  double error_at_first_;
+  bool any_taken_ = false;
 };
 
 }  // namespace
+
+bool may_take_place_of(const SettledState& then, const SettledState& now, double most_error, double error_at_first) {
+  if (then.flawed > now.flawed || then.doubtful > now.doubtful || then.missed > now.missed) return false;
+  return then.error <= (then.flawed < now.flawed ? std::max(most_error, error_at_first) : most_error);
+}
 
 void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                   const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {

@@ -1,37 +1,11 @@
 #include "hybrid_quad/singular_patches/singular_patches.h"
 
-#include <algorithm>
-
+#include "hybrid_quad/singular_patches/patch_growth.h"
 #include "hybrid_quad/singular_patches/patch_triangles.h"
 
 namespace hybrid_quad {
 
 namespace {
-
-/// Pieces outside every cell, joined across everything but features; patches in order of their first piece.
-std::vector<std::vector<int>> find_patches(const RegularQuads& regular) {
-  const GridOverlay& overlay = regular.overlay;
-  std::vector<std::vector<int>> patches;
-  std::vector<char> seen(overlay.piece_count(), 0);
-  for (int seed = 0; seed < overlay.piece_count(); ++seed) {
-    if (seen[seed] || regular.piece_cell[seed] >= 0) continue;
-    std::vector<int> members{seed};
-    seen[seed] = 1;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      for (int k = overlay.piece_begin[members[i]]; k < overlay.piece_begin[members[i] + 1]; ++k) {
-        const int o = overlay.opposite[k];
-        if (o < 0 || overlay.curve[k] >= 0) continue;
-        const int neighbour = overlay.piece_of[o];
-        if (seen[neighbour] || regular.piece_cell[neighbour] >= 0) continue;
-        seen[neighbour] = 1;
-        members.push_back(neighbour);
-      }
-    }
-    std::sort(members.begin(), members.end());
-    patches.push_back(std::move(members));
-  }
-  return patches;
-}
 
 double area_of(const PatchSurface& patch) { return patch.mesh.total_area(); }
 
@@ -68,32 +42,6 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
   return out;
 }
 
-/// Gives the cells around patches up, so that the patches grow over their narrow places.
-int release_neighbours(RegularQuads& regular, const std::vector<std::vector<int>>& patches, const std::vector<int>& failed) {
-  const GridOverlay& overlay = regular.overlay;
-  std::vector<char> released(regular.side.size(), 0);
-  for (const int i : failed)
-    for (const int piece : patches[i])
-      for (int k = overlay.piece_begin[piece]; k < overlay.piece_begin[piece + 1]; ++k) {
-        const int o = overlay.opposite[k];
-        if (o < 0 || overlay.curve[k] >= 0) continue;
-        const int cell = regular.piece_cell[overlay.piece_of[o]];
-        if (cell >= 0) released[cell] = 1;
-      }
-  std::vector<int> new_id(regular.side.size(), -1);
-  std::vector<std::array<int, 4>> kept;
-  for (std::size_t c = 0; c < regular.side.size(); ++c) {
-    if (released[c]) continue;
-    new_id[c] = static_cast<int>(kept.size());
-    kept.push_back(regular.side[c]);
-  }
-  const int count = static_cast<int>(regular.side.size() - kept.size());
-  regular.side = std::move(kept);
-  for (int& cell : regular.piece_cell)
-    if (cell >= 0) cell = new_id[cell];
-  return count;
-}
-
 }  // namespace
 
 SingularPatches fill_singular_patches(const WorkingSurface& surface, const FrameField& frames,
@@ -101,6 +49,7 @@ SingularPatches fill_singular_patches(const WorkingSurface& surface, const Frame
                                       RegularQuads& regular, const PatchOptions& options, const RunContext& context) {
   SingularPatches out;
   for (int round = 0;; ++round) {
+    out.released_cells += grow_over_short_loops(regular);
     out.patches.clear();
     out.singular_area = 0;
     const std::vector<std::vector<int>> patches = find_patches(regular);
@@ -122,7 +71,7 @@ SingularPatches fill_singular_patches(const WorkingSurface& surface, const Frame
         for (const int piece : patches[i]) out.piece_patch[piece] = static_cast<int>(i);
       return out;
     }
-    const int released = round < options.widening_rounds ? release_neighbours(regular, patches, failed) : 0;
+    const int released = round < options.widening_rounds ? grow(regular, patches, failed) : 0;
     if (released == 0) throw InternalError("singular patches", "a patch can't be filled: " + reason);
     out.released_cells += released;
   }

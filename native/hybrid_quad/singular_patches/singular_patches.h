@@ -32,7 +32,8 @@ struct PatchOptions {
 /// Fills what the regular quads leave: the pieces of every patch are triangulated, refined with the phases of Psi, given
 /// border extrema, and quadrangulated by the Morse-Smale complex; where that is no valid quad patch, combinatorially.
 /// Arc and node ids are overlay half-edges (the first of the arc) and overlay vertices.
-/// A patch that cannot be filled takes its neighbouring cells in (they leave `regular`) and is tried again.
+/// A patch with a border loop of fewer than four arcs takes the cells beside it in (they leave `regular`) until it has none
+/// (patch_growth.h); one that cannot be filled takes all its neighbouring cells in and is tried again.
 SingularPatches fill_singular_patches(const WorkingSurface& surface, const FrameField& frames,
                                       const SpanningParameterization& param,
                                       RegularQuads& regular, const PatchOptions& options, const RunContext& context);
