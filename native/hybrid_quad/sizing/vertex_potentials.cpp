@@ -53,30 +53,26 @@ void VertexPotentials::add_springs(const TriangleMesh& mesh, const FrameField& f
   }
 }
 
-void VertexPotentials::solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x,
-                             const RunContext& context) const {
+void VertexPotentials::assemble(const CorrectionCosts& costs, double lambda, SparseMatrix& matrix, Eigen::VectorXd& right_side) const {
   using Matrix23 = Eigen::Matrix<double, 2, 3>;
   const int n = static_cast<int>(place_.size()), faces = static_cast<int>(gradient_.size());
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(12 * static_cast<std::size_t>(faces) + 10 * springs_.size() + n);
-  Eigen::VectorXd right_side = Eigen::VectorXd::Zero(n);
-  const auto add = [&](int i, int j, double value) { entries.emplace_back(std::max(i, j), std::min(i, j), value); };
+  right_side = Eigen::VectorXd::Zero(n);
+  // The lower triangle of what two unknowns have in common, called once a pair: twice of it on the diagonal where they are one.
+  const auto add = [&](int a, int b, int i, int j, double value) {
+    entries.emplace_back(std::max(i, j), std::min(i, j), i == j && a != b ? 2 * value : value);
+  };
   Matrix23 growth;
   growth << -1, 1, 0, 0, -1, 1;
   for (int f = 0; f < faces; ++f) {
     const Matrix23 map = gradient_[f] * growth;
     for (int row = 0; row < 2; ++row) {
-      const Vector2& stiffness = costs.stiffness[2 * f + row];
-      const Matrix23 weighted = stiffness.asDiagonal() * map;
+      const Matrix23 weighted = costs.stiffness[2 * f + row].asDiagonal() * map;
       const Eigen::Matrix3d element = map.transpose() * weighted;
       for (int a = 0; a < 3; ++a) {
-        const int i = unknown(3 * f + a, row);
-        right_side[i] += weighted(row, a);
-        for (int b = 0; b <= a; ++b) {
-          const int j = unknown(3 * f + b, row);
-          add(i, j, element(a, b));
-          if (i == j && a != b) add(i, j, element(a, b));
-        }
+        right_side[unknown(3 * f + a, row)] += weighted(row, a);
+        for (int b = 0; b <= a; ++b) add(a, b, unknown(3 * f + a, row), unknown(3 * f + b, row), element(a, b));
       }
     }
   }
@@ -84,17 +80,22 @@ void VertexPotentials::solve(const CorrectionCosts& costs, double lambda, std::v
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b) {
         const double value = spring.coefficient[a] * spring.coefficient[b] / (lambda * spring.softness);
-        if (value == 0) continue;
-        add(spring.unknown[a], spring.unknown[b], value);
-        if (spring.unknown[a] == spring.unknown[b] && a != b) add(spring.unknown[a], spring.unknown[b], value);
+        if (value != 0) add(a, b, spring.unknown[a], spring.unknown[b], value);
       }
   // Functions are known up to a constant: one value of each is held.
   for (const int node : cut_.piece_node)
     for (int row = 0; row < 2; ++row) entries.emplace_back(2 * node + row, 2 * node + row, 1.0);
-  SparseMatrix matrix(n, n);
+  matrix.resize(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
+}
+
+void VertexPotentials::solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x,
+                             const RunContext& context) const {
+  SparseMatrix matrix;
+  Eigen::VectorXd right_side;
+  assemble(costs, lambda, matrix, right_side);
   const Eigen::VectorXd value = solve_sparse(matrix, right_side, place_, context);
-  for (int f = 0; f < faces; ++f)
+  for (int f = 0; f < static_cast<int>(gradient_.size()); ++f)
     for (int row = 0; row < 2; ++row) {
       const double first = value[unknown(3 * f, row)], second = value[unknown(3 * f + 1, row)], third = value[unknown(3 * f + 2, row)];
       const Vector2 corrected = gradient_[f] * Vector2(second - first, third - second);

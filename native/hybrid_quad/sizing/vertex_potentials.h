@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hybrid_quad/frame_field/frame_field.h"
+#include "hybrid_quad/numerics/sparse_matrix.h"
 #include "hybrid_quad/sizing/correction_costs.h"
 #include "hybrid_quad/sizing/disk_cut.h"
 
@@ -20,7 +21,7 @@ class VertexPotentials {
   void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) const;
 
  private:
-  /// Row X_r of a face's correction is `map` times what function r grows by along the face's first two edges.
+  /// Row X_r of a face's correction is this times what function r grows by along the face's first two edges.
   using Gradient = Eigen::Matrix2d;
   /// A difference of values at nodes, one of them for each coordinate, that should vanish.
   struct Spring {
@@ -30,6 +31,7 @@ class VertexPotentials {
   };
 
   int unknown(int corner, int row) const { return 2 * cut_.node[corner] + row; }
+  void assemble(const CorrectionCosts& costs, double lambda, SparseMatrix& matrix, Eigen::VectorXd& right_side) const;
   void add_springs(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);
 
   DiskCut cut_;
