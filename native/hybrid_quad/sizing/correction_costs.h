@@ -12,7 +12,7 @@ struct CorrectionCosts {
   std::vector<Vector2> stiffness;  ///< per node: weights of the row of (X - I)^2, without lambda
   std::vector<int> feature;        ///< per node: the half-edge of its face that the row has to vanish on, or -1
   std::vector<double> area;        ///< #F, over the mean one
-  double feature_weight = 1;
+  double feature_weight = 1;       ///< of a feature's squared transversal part, beside an edge's squared curl
 
   /// How soft the demand is that a vector of the grid measures the same from both sides, or nothing across a feature.
   static double softness(const Vector2& measured, double weight) { return std::max(measured.squaredNorm(), 1e-12) / weight; }

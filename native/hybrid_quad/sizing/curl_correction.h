@@ -7,7 +7,8 @@
 
 namespace hybrid_quad {
 
-/// Up to this lambda frames count as integrable all over: what is left of the curl is at most a hundredth of an edge (docs/decisions/0036).
+/// Up to this lambda frames count as integrable all over: a relative curl of half a hundredth would cost as much as a frame that is
+/// off by its own size (docs/decisions/0036).
 constexpr double kMostForPotentials = 2e-5;
 
 struct CurlCorrectionOptions {

@@ -7,8 +7,8 @@
 
 namespace hybrid_quad {
 
-/// A surface cut open so that every piece is a disk without cones inside, where grid coordinates are functions. The cut is
-/// a tree's: it has no end that is not a cone.
+/// A surface cut open so that every piece is a disk without cones inside, where grid coordinates are functions. Inside the
+/// surface the cut has no end that is not a cone.
 struct DiskCut {
   std::vector<int> node;          ///< 3 #F: which vertex of the cut surface the corner at from(h) is
   std::vector<int> node_vertex;   ///< which vertex of the surface a node is a copy of

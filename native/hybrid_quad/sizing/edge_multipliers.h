@@ -15,7 +15,10 @@ class EdgeMultipliers {
  public:
   EdgeMultipliers(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);
 
-  /// \param x  gets #F matrices
+  /// \param costs   as in the constructor, with other stiffnesses perhaps
+  /// \param lambda  what X - I costs, beside the curl; no unit
+  /// \param x       gets #F matrices {X00, X01, X10, X11}, which act on the grid vectors of their faces
+  /// \throws Cancelled if the caller asked to stop
   void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) const;
 
  private:

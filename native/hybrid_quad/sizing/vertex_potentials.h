@@ -11,13 +11,17 @@
 namespace hybrid_quad {
 
 /// The correction for small lambda: on a surface cut to disks the corrected frames are the gradients of two functions, so
-/// that edges measure the same from both sides but where they are cut, and there to within lambda. One sixth of the
-/// unknowns of the frames, a third of EdgeMultipliers', and couplings between neighbouring vertices only.
+/// that edges measure the same from both sides but where they are cut, and there to within lambda. A quarter of
+/// the corrections' unknowns, a third of EdgeMultipliers', and couplings between neighbouring vertices only. The energy is that of
+/// curl_correction (MATH 7), with infinite weight on edges that are not cut (docs/decisions/0036).
 class VertexPotentials {
  public:
   VertexPotentials(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);
 
-  /// \param x  gets #F matrices
+  /// \param costs   as in the constructor, with other stiffnesses perhaps
+  /// \param lambda  what X - I costs, beside the curl of cut edges; no unit
+  /// \param x       gets #F matrices {X00, X01, X10, X11}, which act on the grid vectors of their faces
+  /// \throws Cancelled if the caller asked to stop
   void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) const;
 
  private:
