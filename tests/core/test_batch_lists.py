@@ -61,6 +61,12 @@ def test_no_result_takes_the_place_of_an_input(folder):
         list_assets([str(folder / "a.obj")], {}, BatchPlan(output=str(folder)), no_objects)
 
 
+def test_the_folder_of_the_results_is_told_as_such(folder):
+    plan = BatchPlan(str(folder))
+    with pytest.raises(JobFileError, match="folder of the results"):
+        list_assets([str(folder)], {}, plan, lambda _: [])
+
+
 def test_nothing_found_is_said(folder, plan):
     for text in ("nowhere", str(folder / "*.blend")):
         with pytest.raises(JobFileError, match="no such file or folder"):

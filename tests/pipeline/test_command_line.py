@@ -88,13 +88,15 @@ def test_the_stages_are_dumped(tmp_path, torus):
 
 
 def unchanged(tmp_path, arguments, status, out="out.obj"):
-    """Runs a command that must fail and leave an old result, and nothing half-written, behind."""
-    target = tmp_path / out
-    target.write_text("old result")
-    files = set(tmp_path.iterdir())
+    """Runs a command that must fail and leave all files, an old result among them, as they were."""
+    (tmp_path / out).write_text("old result")
+    before = contents(tmp_path)
     assert main(arguments) == status
-    assert target.read_text() == "old result"
-    assert set(tmp_path.iterdir()) == files
+    assert contents(tmp_path) == before
+
+
+def contents(folder):
+    return {path: path.read_bytes() if path.is_file() else None for path in folder.iterdir()}
 
 
 def test_an_input_that_cannot_be_remeshed(tmp_path, moebius, capfd):
@@ -130,6 +132,41 @@ def test_a_failure_is_in_the_report_too(tmp_path, moebius):
 )
 def test_wrong_usage(tmp_path, torus, options):
     unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), *options], exit_codes.WRONG_USAGE)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["remesh", "torus.obj", "out.obj", "--report", "torus.obj"],
+        ["remesh", "torus.obj", "out.obj", "--report", "./out.obj"],
+        ["remesh", "torus.obj", "out.obj", "--report", "both", "--picture", "both"],
+        ["remesh", "torus.obj", "lines.obj", "--guides", "lines.obj"],
+        ["remesh", "torus.obj", "out.obj", "--density", "numbers.txt", "--picture", "link.txt"],
+        ["check", "torus.obj", "--report", "torus.obj"],
+        ["case", "torus.obj", "-o", "torus.obj"],
+    ],
+    ids=" ".join,
+)
+def test_no_file_that_was_named_is_written_over_by_another(tmp_path, torus, capfd, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    for name in ("lines.obj", "numbers.txt"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "link.txt").symlink_to("numbers.txt")
+    unchanged(tmp_path, words, exit_codes.WRONG_USAGE)
+    assert "named twice" in capfd.readouterr().err
+
+
+def test_a_mesh_may_be_remeshed_in_its_place(tmp_path, torus):
+    assert main(["remesh", torus, torus, "--quads", "100", "--quiet"]) == exit_codes.OK
+    assert set(read_mesh(torus)[1].sizes.tolist()) == {4}
+
+
+def test_stages_that_have_no_folder_are_wrong_usage(tmp_path, torus, capfd):
+    out = str(tmp_path / "out.obj")
+    unchanged(tmp_path, ["remesh", torus, out, "--dump-stages", torus], exit_codes.WRONG_USAGE)
+    assert "is no folder" in capfd.readouterr().err
+    unchanged(tmp_path, ["remesh", torus, out, "--dump-stages", f"{torus}/stages"], exit_codes.WRONG_USAGE)
+    assert "torus.obj/stages" in capfd.readouterr().err
 
 
 def test_unreadable_files(tmp_path, torus, capfd):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..batch_jobs.settings import KINDS, SettingError, canonical
-from ..core.mesh_io import MeshFileError, check_place
+from ..core.mesh_io import MeshFileError, check_apart, check_place
 from . import exit_codes, remesh_command
 from .messages import say
 
@@ -59,6 +59,8 @@ def _pack(arguments: argparse.Namespace) -> int:
     from ..cases import case_file, case_inputs, case_run
 
     check_place(arguments.output)
+    read = [getattr(arguments, name) for name, kind in KINDS.items() if kind == "file"]
+    check_apart(arguments.output, [arguments.input, *read])
     source, origin = Path(arguments.input).absolute(), _origin(arguments)
     settings = canonical({name: getattr(arguments, name) for name in KINDS}, Path.cwd())
     case_inputs.require_files(source, settings)

@@ -48,6 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         say(f"{options.input}: this machine has not enough memory for the run; nothing was written")
         return exit_codes.CANCELLED
+    except OSError as error:  # of a folder of stages, say: what else is read or written has errors of its own
+        say(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        return exit_codes.WRONG_USAGE
     except Exception as error:
         kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
         say(

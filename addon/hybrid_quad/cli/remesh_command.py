@@ -6,6 +6,7 @@ import argparse
 import math
 import signal
 import time
+from pathlib import Path
 from typing import Any
 
 from .. import __version__
@@ -23,6 +24,8 @@ from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say, what_became_of
 from .part_arguments import add_part, joined_mesh, part_solver
 from .progress_bar import ProgressBar
+
+FILES_READ = ("features", "curve_counts", "guides", "density", "frames", "part")  # beside IN
 
 
 class UsageProblem(Exception):
@@ -177,8 +180,7 @@ def run(arguments: argparse.Namespace) -> int:
         end_with_stdin()
     options = _options(arguments)
     mesh_io.check_writable(arguments.output)
-    for path in filter(None, (arguments.report, arguments.picture)):
-        mesh_io.check_place(path)
+    _check_files(arguments)
     try:
         result, mesh = _remesh(arguments, options, started)
         if arguments.picture:
@@ -200,6 +202,19 @@ def run(arguments: argparse.Namespace) -> int:
             f"scaled Jacobian {result.report['scaled_jacobian']['mean']:.3f} in the mean, {seconds:.1f} s"
         )
     return exit_codes.OK
+
+
+def _check_files(arguments: argparse.Namespace) -> None:
+    """Raises MeshFileError where a file cannot be written, or not without loss of another that was named. OUT may be IN."""
+    named = [getattr(arguments, name) for name in FILES_READ]
+    mesh_io.check_apart(arguments.output, named)
+    named += [arguments.input, arguments.output]
+    for path in filter(None, (arguments.report, arguments.picture)):
+        mesh_io.check_place(path)
+        mesh_io.check_apart(path, named)
+        named.append(path)
+    if arguments.dump_stages and Path(arguments.dump_stages).exists() and not Path(arguments.dump_stages).is_dir():
+        raise mesh_io.MeshFileError(f"{arguments.dump_stages}: is no folder")
 
 
 def _options(arguments: argparse.Namespace) -> RemeshOptions:
@@ -325,7 +340,7 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         return
     if isinstance(error, InputError):
         status = "input_error"
-    elif isinstance(error, mesh_io.MeshFileError):
+    elif isinstance(error, (mesh_io.MeshFileError, OSError)):
         status = "unreadable_file"
     elif isinstance(error, MemoryError):
         status = "memory_limit"
