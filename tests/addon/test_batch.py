@@ -202,6 +202,8 @@ def test_a_failure_writes_a_report_and_nothing_else(blend, tmp_path, arguments, 
         ["--object", "Cube", "--output", "out.blend", "--adaptivity", "2"],
         ["--object", "Cube", "--output", "out.blend", "--anisotropy", "0.5"],
         ["--object", "Cube", "--output", "out.blend", "--quads", "5", "--edge-length", "1"],
+        ["--object", "Cube", "--output", "out.blend", "--report", "nowhere/r.json"],
+        ["--object", "Cube", "--output", "out.blend", "--report", "both", "--picture", "both"],
     ],
 )
 def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
@@ -209,6 +211,15 @@ def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
     add_cube()
     assert command.main(arguments) == 2
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_report_does_not_take_the_place_of_the_file_that_was_opened(blend):
+    before = blend.read_bytes()
+    out = blend.with_name("out.blend")
+    for other in (blend, out):
+        done = _run(blend, "--object", "Cube", "--output", str(out), "--report", str(other))
+        assert done.returncode == 2 and "named twice" in done.stderr
+        assert blend.read_bytes() == before and not out.exists()
 
 
 def test_a_bug_is_status_3(tmp_path, monkeypatch):

@@ -19,7 +19,7 @@ from ..cli.main import main as package_main
 from ..cli.messages import describe_defect, describe_symmetry, what_became_of
 from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.mesh_io import MeshFileError, replacing
+from ..core.mesh_io import MeshFileError, check_apart, check_place, replacing
 from ..core.options import AXES, RemeshOptions
 from ..core.parent_process import end_with_stdin
 from ..core.strokes import KINDS
@@ -76,6 +76,11 @@ def main(arguments: Sequence[str]) -> int:
         print("hybrid_quad: --object and --output are needed", file=sys.stderr)
         return exit_codes.WRONG_USAGE
     asked: RemeshOptions | None = None
+    try:
+        _check_places(options)
+    except MeshFileError as error:  # not even a report of it can be written
+        print(f"hybrid_quad: {error}", file=sys.stderr)
+        return exit_codes.WRONG_USAGE
     try:
         with _interruptible():
             obj = _find_object(options.object)
@@ -291,6 +296,15 @@ def _find_object(name: str) -> bpy.types.Object:
     if obj.library is not None:
         raise UsageError(f'"{name}" is linked from another file')
     return obj
+
+
+def _check_places(options: argparse.Namespace) -> None:
+    """Raises MeshFileError where a report or picture cannot be written, or not without loss of another file."""
+    named = [options.output, bpy.data.filepath]
+    for path in filter(None, (options.report, options.picture)):
+        check_place(path)
+        check_apart(path, named)
+        named.append(path)
 
 
 def _check_output(path: str) -> None:
