@@ -52,5 +52,7 @@ def test_every_code_of_an_error_is_told():
 
 def test_every_flag_of_remesh_is_told():
     asked = vars(_parser().parse_args(["remesh", "in.obj", "out.obj"]))
-    missing = {name for name in asked if name not in ("run", "input", "output") and f"--{name.replace('_', '-')}" not in PAGE}
+    missing = {
+        name for name in asked if name not in ("run", "input", "output") and f"--{name.replace('_', '-')}" not in PAGE
+    }
     assert not missing

@@ -20,4 +20,6 @@ def overridable(cls: type[bpy.types.PropertyGroup]) -> type[bpy.types.PropertyGr
 
 
 def _is_group(setting: Any) -> bool:
-    return setting.function is bpy.props.PointerProperty and issubclass(setting.keywords["type"], bpy.types.PropertyGroup)
+    return setting.function is bpy.props.PointerProperty and issubclass(
+        setting.keywords["type"], bpy.types.PropertyGroup
+    )
