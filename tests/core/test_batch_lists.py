@@ -154,6 +154,8 @@ def test_ranges():
     assert in_range(items, "0-3") == [0, 1, 2, 3]
     assert in_range(items, "18-40, 2,2") == [2, 18, 19]
     assert [each for first in range(0, 20, 6) for each in in_range(items, f"{first}-{first + 5}")] == items
+    with pytest.raises(ValueError, match="ends before"):
+        in_range(items, "0-3,5-4")
     for text in ("", "a", "3-", "-3", "1;2"):
         with pytest.raises(ValueError):
             in_range(items, text)

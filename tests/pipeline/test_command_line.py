@@ -180,6 +180,21 @@ def test_unreadable_files(tmp_path, torus, capfd):
     assert main(["remesh", torus, str(tmp_path / "none" / "out.obj")]) == exit_codes.WRONG_USAGE
 
 
+@pytest.mark.parametrize(
+    "words", [["remesh", "in.obj"], ["batch", "."], ["remesh", "a.obj", "b.obj", "--quads", "many"], ["none"]]
+)
+def test_a_mistyped_command_is_answered_in_two_lines(capfd, words):
+    assert main(words) == exit_codes.WRONG_USAGE
+    told = capfd.readouterr().err.splitlines()
+    assert len(told) == 2 and told[1].endswith("--help tells more")
+
+
+@pytest.mark.parametrize("share", ["nan", "-1", "101"])
+def test_a_gate_that_could_never_close_is_wrong_usage(tmp_path, torus, share):
+    assert main(["batch", torus, "--output", str(tmp_path / "out"), "--fail-above", share]) == exit_codes.WRONG_USAGE
+    assert not (tmp_path / "out").exists()
+
+
 def test_no_command_and_help(capfd):
     assert main([]) == exit_codes.WRONG_USAGE
     assert main(["--help"]) == exit_codes.OK
@@ -318,6 +333,18 @@ def test_interrupted_runs_leave_no_file(tmp_path, number, after):
     assert child.returncode == exit_codes.CANCELLED, errors
     assert "nothing was written" in errors
     assert set(tmp_path.iterdir()) == files
+
+
+def test_an_interruption_while_it_starts_is_answered_as_any_other(monkeypatch, capfd):
+    from hybrid_quad.cli import main as module
+    from hybrid_quad.cli import program
+
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_parser", interrupted)
+    assert program.main() == exit_codes.CANCELLED
+    assert "nothing was written" in capfd.readouterr().err
 
 
 def test_check(tmp_path, torus, moebius, capfd):

@@ -9,6 +9,7 @@ import signal
 import sys
 from collections.abc import Sequence
 from types import FrameType
+from typing import NoReturn
 
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
@@ -69,8 +70,15 @@ def _interrupt(_number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt("terminated")
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says in a line what is wrong, which the usage of thirty options would hide, and where to read on."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(exit_codes.WRONG_USAGE, f"{self.prog}: {message}\n{self.prog} --help tells more\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="hybrid-quad",
         description="Pure-quad remeshing of surface meshes.",
         epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal "
