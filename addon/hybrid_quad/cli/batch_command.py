@@ -7,7 +7,7 @@ from typing import Any
 
 from ..batch_jobs.settings import KINDS
 from ..core.mesh_io import WRITABLE
-from . import remesh_command
+from .setting_arguments import add_settings
 
 
 def add_to(commands: Any) -> None:
@@ -56,7 +56,7 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     settings = parser.add_argument_group("settings")
-    remesh_command.add_settings(settings)
+    add_settings(settings)
     # Only what is given counts, so that settings of job files and objects are not hidden by defaults.
     parser.set_defaults(run=run, input="batch", **dict.fromkeys(KINDS))
 

@@ -16,6 +16,7 @@ from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
 from . import batch_command, case_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
+from .setting_arguments import UsageProblem
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -61,9 +62,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "hybrid-quad case packs all of that into one file, and leaves names out if asked."
         )
         return exit_codes.BUG
-
-
-UsageProblem = remesh_command.UsageProblem
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> None:
