@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -321,15 +320,16 @@ def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(tmp_path, torus, 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("after", [0.6, 1.5])
-def test_interrupted_runs_leave_no_file(tmp_path, number, after):
+@pytest.mark.parametrize("stage", ["mesh", "sizing"])
+def test_interrupted_runs_leave_no_file(tmp_path, number, stage):
     mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
     files = set(tmp_path.iterdir())
     command = [sys.executable, "-m", "hybrid_quad", "remesh", mesh, str(tmp_path / "out.ply"), "--quads", "20000"]
     child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
-    time.sleep(after)
+    told = next((line for line in child.stderr if line.rstrip().endswith(f"% {stage}")), None)
+    assert told is not None, "the run ended before"
     child.send_signal(number)
-    _, errors = child.communicate(timeout=20)
+    _, errors = child.communicate(timeout=60)
     assert child.returncode == exit_codes.CANCELLED, errors
     assert "nothing was written" in errors
     assert set(tmp_path.iterdir()) == files
