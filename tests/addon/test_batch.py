@@ -14,7 +14,7 @@ import bpy
 import pytest
 
 import hybrid_quad
-from hybrid_quad.blender import command, edge_marks
+from hybrid_quad.blender import command, command_arguments, edge_marks
 from hybrid_quad.blender.remesh_task import prepare_task
 from scenes import add_cube, add_object, assert_sound
 
@@ -127,10 +127,12 @@ def test_every_switch_has_an_argument(argument):
     obj, name = add_cube(), SETTINGS_OF_ARGUMENTS[argument]
     for prefix, value in (("--", True), ("--no-", False)):
         setattr(obj.hybrid_quad, name, not value)
-        command._apply_settings(obj, command._parser().parse_args(["--object", "Cube", "--output", "o.blend"]))
+        command_arguments.apply_settings(
+            obj, command_arguments.command_parser().parse_args(["--object", "Cube", "--output", "o.blend"])
+        )
         assert getattr(obj.hybrid_quad, name) is not value
         words = ["--object", "Cube", "--output", "o.blend", prefix + argument]
-        command._apply_settings(obj, command._parser().parse_args(words))
+        command_arguments.apply_settings(obj, command_arguments.command_parser().parse_args(words))
         assert getattr(obj.hybrid_quad, name) is value
 
 
@@ -142,7 +144,7 @@ def test_guides_and_flow_from_arguments():
         "--object Cube --output o.blend --guide-object Line --guide-collection Lines --guide-radius 3 --adaptivity 0.5"
     )
     words += " --field-smoothness 0.25 --anisotropy 2"
-    command._apply_settings(obj, command._parser().parse_args(words.split()))
+    command_arguments.apply_settings(obj, command_arguments.command_parser().parse_args(words.split()))
     settings = obj.hybrid_quad
     assert settings.guide_object == line and settings.guide_collection == bpy.data.collections["Lines"]
     assert (settings.guide_radius, settings.adaptivity) == (3, 0.5)
@@ -151,8 +153,9 @@ def test_guides_and_flow_from_arguments():
 
 def test_a_ratio_of_the_faces_is_a_target():
     obj = add_cube(segments=10)  # 600 faces
-    command._apply_settings(
-        obj, command._parser().parse_args(["--object", "Cube", "--output", "o.blend", "--ratio", "0.5"])
+    command_arguments.apply_settings(
+        obj,
+        command_arguments.command_parser().parse_args(["--object", "Cube", "--output", "o.blend", "--ratio", "0.5"]),
     )
     assert prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options.quads == 300
     obj.modifiers.new("Subdivision", "SUBSURF").levels = 1
@@ -163,7 +166,7 @@ def test_a_chord_error_from_arguments_takes_the_place_of_count_and_adaptivity():
     obj = add_cube()
     obj.hybrid_quad.adaptivity = 0.5
     words = "--object Cube --output o.blend --chord-error 0.02 --narrow-quads 1"
-    command._apply_settings(obj, command._parser().parse_args(words.split()))
+    command_arguments.apply_settings(obj, command_arguments.command_parser().parse_args(words.split()))
     assert (obj.hybrid_quad.target_mode, obj.hybrid_quad.narrow_quads) == ("CHORD", 1)
     options = prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options
     assert options.chord_error == pytest.approx(0.02)
@@ -202,6 +205,8 @@ def test_a_failure_writes_a_report_and_nothing_else(blend, tmp_path, arguments, 
         ["--object", "Cube", "--output", "out.blend", "--adaptivity", "2"],
         ["--object", "Cube", "--output", "out.blend", "--anisotropy", "0.5"],
         ["--object", "Cube", "--output", "out.blend", "--quads", "5", "--edge-length", "1"],
+        ["--object", "Cube", "--output", "out.blend", "--report", "nowhere/r.json"],
+        ["--object", "Cube", "--output", "out.blend", "--report", "both", "--picture", "both"],
     ],
 )
 def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
@@ -209,6 +214,15 @@ def test_wrong_usage_is_status_2(tmp_path, monkeypatch, arguments):
     add_cube()
     assert command.main(arguments) == 2
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_report_does_not_take_the_place_of_the_file_that_was_opened(blend):
+    before = blend.read_bytes()
+    out = blend.with_name("out.blend")
+    for other in (blend, out):
+        done = _run(blend, "--object", "Cube", "--output", str(out), "--report", str(other))
+        assert done.returncode == 2 and "named twice" in done.stderr
+        assert blend.read_bytes() == before and not out.exists()
 
 
 def test_a_bug_is_status_3(tmp_path, monkeypatch):

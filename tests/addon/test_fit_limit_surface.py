@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from hybrid_quad.blender import command
+from hybrid_quad.blender import command_arguments
 from hybrid_quad.blender.remesh_task import prepare_task
 from scenes import add_cube, add_sphere, points_of, remesh
 
@@ -52,5 +52,5 @@ def test_without_the_setting_nothing_is_creased():
 def test_the_setting_from_arguments():
     obj = add_cube()
     words = "--object Cube --output o.blend --fit-limit"
-    command._apply_settings(obj, command._parser().parse_args(words.split()))
+    command_arguments.apply_settings(obj, command_arguments.command_parser().parse_args(words.split()))
     assert prepare_task(obj, bpy.context.evaluated_depsgraph_get()).options.fit_limit_surface is True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from types import SimpleNamespace
 
 import bpy
@@ -11,7 +12,7 @@ import pytest
 from hybrid_quad.blender import guide_lines
 from hybrid_quad.blender.remesh_task import prepare_task
 from hybrid_quad.worker import request
-from scenes import activate, add_cube, add_grid, points_of
+from scenes import activate, add_cube, add_grid, points_of, remesh
 
 MATRIX = np.array([[2, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1]], float)
 
@@ -96,6 +97,17 @@ def test_attributes_of_another_kind_are_left_alone():
     _paint(obj, "hybrid_quad_density", "FACE", np.full(len(obj.data.polygons), 2.0))
     task = _task(obj)
     assert task.guides() is None and task.source.density is None
+    for name in ("hybrid_quad_guide", "hybrid_quad_density"):
+        assert any(name in sentence for sentence in task.ignored)
+    told = json.loads(remesh().hybrid_quad.last_report)["warnings"]
+    assert set(task.ignored) <= set(told)
+
+
+def test_attributes_of_the_form_that_is_read_are_not_told_of():
+    obj = add_grid()
+    _paint(obj, "hybrid_quad_guide", "FACE", np.ones((len(obj.data.polygons), 3)))
+    _paint(obj, "hybrid_quad_density", "POINT", np.full(len(obj.data.vertices), 2.0))
+    assert _task(obj).ignored == ()
 
 
 def test_what_is_switched_off_is_not_asked(monkeypatch):
@@ -264,6 +276,7 @@ def test_an_object_without_lines_guides_nothing():
     obj = add_grid()
     obj.hybrid_quad.guide_object = _add("Empty", None)
     assert _task(obj).guides() is None
+    assert any('"Empty"' in sentence for sentence in _task(obj).ignored)
 
 
 def test_guide_edges_guide_and_are_not_kept():

@@ -53,6 +53,35 @@ def test_settings_reach_the_run():
     assert 0.2 < lengths.mean() < 0.3
 
 
+def test_an_override_of_a_library_has_settings_and_a_mesh_of_its_own(tmp_path):
+    library, scene = str(tmp_path / "library.blend"), str(tmp_path / "scene.blend")
+    bpy.data.libraries.write(library, {add_cube()})
+    with bpy.data.libraries.load(library, link=True) as (theirs, ours):
+        ours.objects = list(theirs.objects)
+    bpy.context.scene.collection.objects.link(ours.objects[0])
+    obj = activate(ours.objects[0].override_create(remap_local_usages=True))
+    obj.name = "Override"
+    obj.hybrid_quad.quads, obj.hybrid_quad.result_mode = 200, "REPLACE"
+    obj.hybrid_quad.transfer.use_parent = False
+    faces = len(faces_of(remesh()))
+    bpy.ops.wm.save_as_mainfile(filepath=scene)
+    bpy.ops.wm.open_mainfile(filepath=scene)
+    (obj,) = (each for each in bpy.data.objects if each.override_library)
+    assert len(obj.data.polygons) == faces
+    assert (obj.hybrid_quad.quads, obj.hybrid_quad.result_mode) == (200, "REPLACE")
+    assert obj.hybrid_quad.transfer.use_parent == (bpy.app.version >= (5, 0))  # lost from 5.0 on
+
+
+@pytest.mark.parametrize(("kind", "hint"), [("FONT", "Convert"), ("EMPTY", "Select a mesh")])
+def test_objects_that_are_no_meshes_are_refused_with_what_to_do(kind, hint):
+    data = bpy.data.curves.new("Text", kind) if kind == "FONT" else None
+    obj = bpy.data.objects.new("Other", data)
+    bpy.context.scene.collection.objects.link(obj)
+    activate(obj)
+    with pytest.raises(RuntimeError, match=hint):
+        bpy.ops.object.hybrid_quad_remesh()
+
+
 def test_new_object_keeps_the_source():
     source = add_sphere()
     source.location = (1, 2, 3)

@@ -61,6 +61,12 @@ def test_no_result_takes_the_place_of_an_input(folder):
         list_assets([str(folder / "a.obj")], {}, BatchPlan(output=str(folder)), no_objects)
 
 
+def test_the_folder_of_the_results_is_told_as_such(folder):
+    plan = BatchPlan(str(folder))
+    with pytest.raises(JobFileError, match="folder of the results"):
+        list_assets([str(folder)], {}, plan, lambda _: [])
+
+
 def test_nothing_found_is_said(folder, plan):
     for text in ("nowhere", str(folder / "*.blend")):
         with pytest.raises(JobFileError, match="no such file or folder"):
@@ -148,6 +154,8 @@ def test_ranges():
     assert in_range(items, "0-3") == [0, 1, 2, 3]
     assert in_range(items, "18-40, 2,2") == [2, 18, 19]
     assert [each for first in range(0, 20, 6) for each in in_range(items, f"{first}-{first + 5}")] == items
+    with pytest.raises(ValueError, match="ends before"):
+        in_range(items, "0-3,5-4")
     for text in ("", "a", "3-", "-3", "1;2"):
         with pytest.raises(ValueError):
             in_range(items, text)

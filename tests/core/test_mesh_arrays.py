@@ -35,8 +35,18 @@ def test_wrong_shapes_and_types_are_refused():
         as_polygons(np.array([[0.0, 1.0, 2.0]]))
     with pytest.raises(ValueError, match="faces"):
         as_polygons(np.array([0, 1, 2]))
-    with pytest.raises(ValueError, match="sharp_edges"):
-        as_edges([[0, 1, 2]])
+    for flat in ([0, 1, 2], (0, 1, 2)):
+        with pytest.raises(ValueError, match="faces"):
+            as_polygons(flat)
+    for edges in ([[0, 1, 2]], [0, 1]):
+        with pytest.raises(ValueError, match="sharp_edges"):
+            as_edges(edges)
+
+
+def test_missing_faces_are_told_as_such():
+    for vertices in (np.zeros((3, 3)), [[0.0, 0.0, 0.0]]):
+        with pytest.raises(TypeError, match="faces are missing"):
+            hybrid_quad.remesh(vertices)
 
 
 def test_indices_beyond_32_bits_do_not_wrap_around():

@@ -203,10 +203,23 @@ def test_binary_stl(tmp_path):
     assert [vertices[face].tolist() for face in rows(polygons)] == [np.array(t, float).tolist() for t in triangles]
 
 
+@pytest.mark.parametrize("suffix", [".obj", ".off"])
+def test_a_mark_of_the_byte_order_before_the_text_is_none_of_it(tmp_path, suffix):
+    vertices, quads = surfaces.quad_box(1)
+    path = tmp_path / f"a{suffix}"
+    write_mesh(path, vertices, quads)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    again, polygons = read_mesh(path)
+    assert np.array_equal(again, vertices)
+    assert rows(polygons) == quads.tolist()
+
+
 @pytest.mark.parametrize(
     ("name", "content", "reason"),
     [
         ("a.obj", "v 0 0 0\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n", "zero"),
+        ("a.off", "OFF\n1 0 0\n0,0 0 0\n", "vertex 0, .*0,0"),
+        ("noending", "", "no ending"),
         ("a.obj", "v 0 0 0\nv 1 0\n", "line 2"),
         ("a.obj", "v 0 0 0\nf 1 two 3\n", "line 2"),
         ("a.off", "OOPS\n", "OFF"),

@@ -56,5 +56,7 @@ def test_a_mesh_goes_through_without_its_arrays(tmp_path):
 def test_what_is_no_mesh():
     with pytest.raises(TypeError, match="list"):
         hybrid_quad.mesh_arrays(POINTS)
-    with pytest.raises(TypeError, match="ndarray has neither"):
+    with pytest.raises(TypeError, match="faces are missing"):
         hybrid_quad.remesh(np.array(POINTS))
+    with pytest.raises(TypeError, match="dict has neither"):
+        hybrid_quad.remesh({"vertices": POINTS})

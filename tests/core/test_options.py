@@ -38,9 +38,12 @@ from hybrid_quad.core import native
         {"symmetry_center": "middle"},
         {"symmetry_center": (0.0, math.nan, 0.0)},
         {"symmetry_center": (0.0, 1.0)},
+        {"symmetry_center": 0.0},
         {"solver": "guess"},
         {"seed": -1},
+        {"seed": 2**64},
         {"threads": -1},
+        {"threads": 2**16},
         {"time_limit": 0.0},
         {"time_limit": math.nan},
     ],
@@ -49,6 +52,19 @@ from hybrid_quad.core import native
 def test_options_that_make_no_sense_are_refused_by_name(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         RemeshOptions(**wrong)
+
+
+@pytest.mark.parametrize(
+    "name", ["edge_length", "sharp_angle", "field_smoothness", "anisotropy", "chord_error", "time_limit"]
+)
+def test_what_is_no_number_is_refused_by_name(name):
+    for wrong in (
+        "1",
+        [1.0],
+        *([] if RemeshOptions.__dataclass_fields__[name].default is None or name == "sharp_angle" else [None]),
+    ):
+        with pytest.raises(TypeError, match=name):
+            RemeshOptions(**{name: wrong})
 
 
 def test_defaults_are_those_of_the_core():

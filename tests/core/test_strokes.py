@@ -5,7 +5,7 @@ import pytest
 
 import hybrid_quad
 from hybrid_quad.core.mesh_arrays import as_polygons
-from hybrid_quad.core.strokes import Stroke, guides_from_strokes, stronger_of, vertex_normals
+from hybrid_quad.core.strokes import Stroke, checked_strokes, guides_from_strokes, stronger_of, vertex_normals
 from hybrid_quad.core.surface_points import fan_triangles, nearest_on_surface, pairs_within
 from support.surfaces import grid, sphere
 
@@ -101,6 +101,11 @@ def test_lines_without_length_guide_nothing(strokes):
 def test_what_makes_no_sense_is_refused(stroke, radius):
     with pytest.raises(ValueError, match=r"radius|stroke|array"):
         hybrid_quad.guides_from_strokes(*grid(4, 4), [stroke], radius=radius)
+
+
+def test_one_line_for_a_list_of_lines_is_told_as_such():
+    with pytest.raises(ValueError, match="strokes"):
+        checked_strokes([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
 
 
 def test_nearest_points_are_nearest():

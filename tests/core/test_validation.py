@@ -99,6 +99,14 @@ def test_each_damage_is_found(change, sentence):
     assert any(re.search(sentence, line) for line in found), found
 
 
+@pytest.mark.parametrize("exponent", [-1020, -600, 600, 1000])
+def test_the_size_of_a_mesh_makes_no_difference(exponent):
+    vertices, quads = surfaces.quad_box(3)
+    assert violations(np.ldexp(vertices, exponent), quads) == []
+    vertices, quads = with_change(no_area)
+    assert violations(np.ldexp(vertices, exponent), quads) == violations(vertices, quads)
+
+
 def test_what_is_no_list_of_quads():
     assert violations(np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert violations(np.zeros((0, 3)), np.zeros((0, 4), int))

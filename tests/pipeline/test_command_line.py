@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -88,13 +87,15 @@ def test_the_stages_are_dumped(tmp_path, torus):
 
 
 def unchanged(tmp_path, arguments, status, out="out.obj"):
-    """Runs a command that must fail and leave an old result, and nothing half-written, behind."""
-    target = tmp_path / out
-    target.write_text("old result")
-    files = set(tmp_path.iterdir())
+    """Runs a command that must fail and leave all files, an old result among them, as they were."""
+    (tmp_path / out).write_text("old result")
+    before = contents(tmp_path)
     assert main(arguments) == status
-    assert target.read_text() == "old result"
-    assert set(tmp_path.iterdir()) == files
+    assert contents(tmp_path) == before
+
+
+def contents(folder):
+    return {path: path.read_bytes() if path.is_file() else None for path in folder.iterdir()}
 
 
 def test_an_input_that_cannot_be_remeshed(tmp_path, moebius, capfd):
@@ -132,6 +133,41 @@ def test_wrong_usage(tmp_path, torus, options):
     unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), *options], exit_codes.WRONG_USAGE)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["remesh", "torus.obj", "out.obj", "--report", "torus.obj"],
+        ["remesh", "torus.obj", "out.obj", "--report", "./out.obj"],
+        ["remesh", "torus.obj", "out.obj", "--report", "both", "--picture", "both"],
+        ["remesh", "torus.obj", "lines.obj", "--guides", "lines.obj"],
+        ["remesh", "torus.obj", "out.obj", "--density", "numbers.txt", "--picture", "link.txt"],
+        ["check", "torus.obj", "--report", "torus.obj"],
+        ["case", "torus.obj", "-o", "torus.obj"],
+    ],
+    ids=" ".join,
+)
+def test_no_file_that_was_named_is_written_over_by_another(tmp_path, torus, capfd, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    for name in ("lines.obj", "numbers.txt"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "link.txt").symlink_to("numbers.txt")
+    unchanged(tmp_path, words, exit_codes.WRONG_USAGE)
+    assert "named twice" in capfd.readouterr().err
+
+
+def test_a_mesh_may_be_remeshed_in_its_place(tmp_path, torus):
+    assert main(["remesh", torus, torus, "--quads", "100", "--quiet"]) == exit_codes.OK
+    assert set(read_mesh(torus)[1].sizes.tolist()) == {4}
+
+
+def test_stages_that_have_no_folder_are_wrong_usage(tmp_path, torus, capfd):
+    out = str(tmp_path / "out.obj")
+    unchanged(tmp_path, ["remesh", torus, out, "--dump-stages", torus], exit_codes.WRONG_USAGE)
+    assert "is no folder" in capfd.readouterr().err
+    unchanged(tmp_path, ["remesh", torus, out, "--dump-stages", f"{torus}/stages"], exit_codes.WRONG_USAGE)
+    assert "torus.obj/stages" in capfd.readouterr().err
+
+
 def test_unreadable_files(tmp_path, torus, capfd):
     out = str(tmp_path / "out.obj")
     unchanged(tmp_path, ["remesh", str(tmp_path / "none.obj"), out], exit_codes.WRONG_USAGE)
@@ -141,6 +177,21 @@ def test_unreadable_files(tmp_path, torus, capfd):
     assert "line 1" in capfd.readouterr().err
     assert main(["remesh", torus, str(tmp_path / "out.xyz")]) == exit_codes.WRONG_USAGE
     assert main(["remesh", torus, str(tmp_path / "none" / "out.obj")]) == exit_codes.WRONG_USAGE
+
+
+@pytest.mark.parametrize(
+    "words", [["remesh", "in.obj"], ["batch", "."], ["remesh", "a.obj", "b.obj", "--quads", "many"], ["none"]]
+)
+def test_a_mistyped_command_is_answered_in_two_lines(capfd, words):
+    assert main(words) == exit_codes.WRONG_USAGE
+    told = capfd.readouterr().err.splitlines()
+    assert len(told) == 2 and told[1].endswith("--help tells more")
+
+
+@pytest.mark.parametrize("share", ["nan", "-1", "101"])
+def test_a_gate_that_could_never_close_is_wrong_usage(tmp_path, torus, share):
+    assert main(["batch", torus, "--output", str(tmp_path / "out"), "--fail-above", share]) == exit_codes.WRONG_USAGE
+    assert not (tmp_path / "out").exists()
 
 
 def test_no_command_and_help(capfd):
@@ -269,18 +320,31 @@ def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(tmp_path, torus, 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("after", [0.6, 1.5])
-def test_interrupted_runs_leave_no_file(tmp_path, number, after):
+@pytest.mark.parametrize("stage", ["mesh", "sizing"])
+def test_interrupted_runs_leave_no_file(tmp_path, number, stage):
     mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
     files = set(tmp_path.iterdir())
     command = [sys.executable, "-m", "hybrid_quad", "remesh", mesh, str(tmp_path / "out.ply"), "--quads", "20000"]
     child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts)
-    time.sleep(after)
+    told = next((line for line in child.stderr if line.rstrip().endswith(f"% {stage}")), None)
+    assert told is not None, "the run ended before"
     child.send_signal(number)
-    _, errors = child.communicate(timeout=20)
+    _, errors = child.communicate(timeout=60)
     assert child.returncode == exit_codes.CANCELLED, errors
     assert "nothing was written" in errors
     assert set(tmp_path.iterdir()) == files
+
+
+def test_an_interruption_while_it_starts_is_answered_as_any_other(monkeypatch, capfd):
+    from hybrid_quad.cli import main as module
+    from hybrid_quad.cli import program
+
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_parser", interrupted)
+    assert program.main() == exit_codes.CANCELLED
+    assert "nothing was written" in capfd.readouterr().err
 
 
 def test_check(tmp_path, torus, moebius, capfd):

@@ -60,6 +60,15 @@ def test_what_parity_forbids_is_reported():
     assert any("asked for 17" in warning for warning in result.report["warnings"])
 
 
+def test_numbers_that_make_no_sense_are_told_as_they_were_given():
+    vertices, faces = surfaces.quad_box(2)
+    path = faces[0][:2].tolist()
+    with pytest.raises(hybrid_quad.InputError, match="-3"):
+        hybrid_quad.remesh(vertices, faces, curve_counts=[(path, -3)])
+    with pytest.raises(TypeError, match="pairs of a path and a number"):
+        hybrid_quad.remesh(vertices, faces, curve_counts=path)
+
+
 def test_errors_name_the_elements():
     vertices, faces = surfaces.box(4)
     path = _box_edge(vertices, 0)

@@ -156,7 +156,7 @@ def check_blender(words: list[str], block: Block) -> None:
     if script.name == "batch.py":
         sources = [
             ROOT / "addon" / "hybrid_quad" / "blender" / name
-            for name in ("command.py", "case_command.py", "part_arguments.py")
+            for name in ("command_arguments.py", "case_command.py", "part_arguments.py")
         ]
     text = "".join(source.read_text() for source in sources)
     for flag in flags(words[words.index("--") + 1 :] if "--" in words else []):

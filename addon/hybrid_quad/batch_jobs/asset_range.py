@@ -38,5 +38,8 @@ def ranges_of(text: str) -> list[tuple[int, int]]:
         match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", part)
         if match is None:
             raise ValueError(f"{text!r} is no list of numbers and ranges, as 0-9 or 3,5,10-19")
-        ranges.append((int(match[1]), int(match[2] or match[1])))
+        first, last = int(match[1]), int(match[2] or match[1])
+        if last < first:
+            raise ValueError(f"{part.strip()!r} ends before it begins")
+        ranges.append((first, last))
     return ranges

@@ -54,6 +54,10 @@ def list_assets(inputs: Sequence[str], defaults: Settings, plan: BatchPlan, list
                 assets += _assets_of_row(row, path.parent, defaults, output, list_objects)
         else:
             found = expand(text, Path(), output)
+            if path.is_dir() and (path == output or output in path.parents):
+                raise JobFileError(
+                    f"{text}: lies in the folder of the results, whose files are not taken; choose another --output"
+                )
             if not found or (len(found) == 1 and not found[0][0].exists()):
                 raise JobFileError(f"{text}: no such file or folder, and no mesh or Blender file matches")
             for each, name in found:

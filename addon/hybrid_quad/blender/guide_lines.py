@@ -42,6 +42,19 @@ def lines_of_settings(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[tup
     ]
 
 
+def guides_without_lines(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[str]:
+    """A sentence for each object or collection that an object's settings name as a guide, but that has no lines."""
+    single, collection = settings.guide_object, settings.guide_collection
+    found = []
+    if single and not lines_of_object(single, depsgraph):
+        found.append(f'The guide object "{single.name}" has no lines to follow')
+    if collection and not any(
+        lines_of_object(obj, depsgraph) for obj in collection.all_objects if obj.type in _LINE_TYPES_OF_COLLECTION
+    ):
+        found.append(f'The guide collection "{collection.name}" has no lines to follow')
+    return found
+
+
 def _own_kind(owner: Any) -> str | None:
     """What a guide object or collection says itself, or None."""
     kind = str(owner.get(KIND_PROPERTY, "")).lower() if owner else ""

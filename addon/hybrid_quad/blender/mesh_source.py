@@ -49,6 +49,8 @@ class MeshSource:
         Painted density: 2 for edges half as long.
     counts : (k,) int32 or None
         Number of quads that each edge asks for along the chain of edges of its value; 0 and less: free.
+    unread : tuple of str
+        What is to be told of attributes that would guide, but have not the form that is read.
     layers : SourceLayers or None
         What the result takes along, where the source was read for a result.
     seen : (n, 3) float64 or None
@@ -64,6 +66,7 @@ class MeshSource:
     guides_of_faces: bool
     density: FloatArray | None
     counts: IntArray | None
+    unread: tuple[str, ...] = ()
     layers: SourceLayers | None = None
     seen: FloatArray | None = None
 
@@ -202,7 +205,8 @@ class _Shapes(NamedTuple):
 
 
 def _no_faces(obj: bpy.types.Object) -> InputError:
-    return InputError("no_faces", f'"{obj.name}" has no faces')
+    lost = " once its modifiers are applied" if obj.data.polygons else ""
+    return InputError("no_faces", f'"{obj.name}" has no faces{lost}')
 
 
 def _linear_of_run(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, along_axes: bool) -> FloatArray:
@@ -262,6 +266,7 @@ def source_of(mesh_of: Callable[[], bpy.types.Mesh], linear: FloatArray, order: 
         guides_of_faces=guide_attributes.are_of_faces(mesh),
         density=guide_attributes.read_density(mesh),
         counts=guide_attributes.read_counts(mesh),
+        unread=tuple(guide_attributes.unread(mesh)),
     )
     yield
     source = replace(source, edge_values=(yield from edge_marks.read(mesh_of, polygons, edges, corner_order)))

@@ -31,6 +31,8 @@ _TIMER_SECONDS = 0.1
 WHOLE_MODES = ("OBJECT", "SCULPT")
 PART_MODES = (*WHOLE_MODES, "EDIT")
 
+CONVERTIBLE_TYPES = ("CURVE", "SURFACE", "FONT", "META")
+
 
 class ActiveMeshOperator(bpy.types.Operator):
     """Works on the active object where that is a mesh, in Object Mode."""
@@ -266,6 +268,8 @@ def problem_of(context: bpy.types.Context, modes: Collection[str] = ("OBJECT",))
 
 def object_problem(obj: bpy.types.Object | None, modes: Collection[str] = ("OBJECT",)) -> str:
     """:func:`problem_of`, of any object."""
+    if obj is not None and obj.type in CONVERTIBLE_TYPES:
+        return "Make a mesh of this object first: Object > Convert > Mesh"
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first"
     if obj.mode not in modes:

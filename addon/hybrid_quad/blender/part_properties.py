@@ -4,6 +4,8 @@
 
 import bpy
 
+from .overridable import overridable
+
 REGIONS = (
     ("WHOLE", "Whole Mesh", "Remesh all faces, with visible modifiers applied"),
     ("SELECTED", "Selected", "Remesh the faces that are selected in Edit Mode"),
@@ -19,6 +21,7 @@ ODD_BORDERS = (
 )
 
 
+@overridable
 class HybridQuadPartSettings(bpy.types.PropertyGroup):
     """Which faces are remeshed; lives on every object as ``object.hybrid_quad.part``."""
 

@@ -9,6 +9,7 @@ import bpy
 from ..core.options import AXES, MOST_QUADS, RemeshOptions
 from . import part_properties
 from .edge_marks import SOURCES
+from .overridable import overridable
 from .transfer.kinds import KINDS
 
 TARGET_MODES = (
@@ -41,6 +42,7 @@ NUMBERS = {
 }
 
 
+@overridable
 class HybridQuadTransferSettings(bpy.types.PropertyGroup):
     """What a result takes along; lives on every object as ``object.hybrid_quad.transfer``."""
 
@@ -50,6 +52,7 @@ class HybridQuadTransferSettings(bpy.types.PropertyGroup):
     }
 
 
+@overridable
 class HybridQuadSettings(bpy.types.PropertyGroup):
     """What the panel shows; lives on every object as ``object.hybrid_quad``."""
 

@@ -28,6 +28,7 @@ from . import (
     selected_objects,
     task_solving,
 )
+from .overridable import OVERRIDE
 from .painting import registration as painting
 from .preview import limit, sessions
 from .preview import settings as preview_settings
@@ -61,7 +62,10 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.hybrid_quad = bpy.props.PointerProperty(
-        type=properties.HybridQuadSettings, name="Hybrid Quad", description="How this object is remeshed"
+        type=properties.HybridQuadSettings,
+        name="Hybrid Quad",
+        description="How this object is remeshed",
+        override=OVERRIDE,
     )
     bpy.types.WindowManager.hybrid_quad_preview = bpy.props.PointerProperty(
         type=preview_settings.HybridQuadPreviewSettings, name="Hybrid Quad", description="What is drawn over objects"

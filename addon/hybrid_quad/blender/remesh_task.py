@@ -55,6 +55,8 @@ class RemeshTask:
         Whether what is painted on the source counts.
     part : PartChoice or None
         The faces to remesh, where these are not all; the source is then the object's own mesh.
+    ignored : tuple of str
+        What is to be told of guides that do nothing.
     """
 
     source: MeshSource
@@ -65,6 +67,7 @@ class RemeshTask:
     use_guides: bool = True
     use_density: bool = True
     part: PartChoice | None = None
+    ignored: tuple[str, ...] = ()
 
     @property
     def marked_edges(self) -> IntArray:
@@ -173,6 +176,8 @@ class _Lines(NamedTuple):
         Sums of the marks that make an edge a guide, and of those that make it a feature instead.
     marks_strength : float
         Of the guides that such edges are.
+    without : list of str
+        A sentence for each object or collection that is named as a guide, but has no lines.
     """
 
     matrix: FloatArray
@@ -180,6 +185,7 @@ class _Lines(NamedTuple):
     guiding_marks: int
     kept_marks: int
     marks_strength: float
+    without: list[str]
 
     @classmethod
     def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Lines:
@@ -199,6 +205,7 @@ class _Lines(NamedTuple):
             edge_marks.marks_guiding(settings),
             edge_marks.marks_asked(settings),
             settings.guide_marks_strength,
+            guide_lines.guides_without_lines(settings, depsgraph),
         )
 
     def strokes(self, source: MeshSource) -> tuple[Stroke, ...]:
@@ -284,4 +291,5 @@ class _TaskOrder(NamedTuple):
             use_guides=self.use_guides,
             use_density=self.use_density,
             part=part,
+            ignored=(*source.unread, *self.lines.without),
         )

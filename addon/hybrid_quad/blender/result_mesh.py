@@ -73,6 +73,8 @@ def place_result(
     if isinstance(result, PartResult):
         mesh = _joined(obj, mesh, result)
     target = _replace_mesh(obj, mesh, task) if placement.in_place else _add_object(context, obj, mesh, task, placement)
+    told = result.report["warnings"]  # by a former placing of the same result too
+    told += [each for each in task.ignored if each not in told]
     for each in {obj, target}:
         each.hybrid_quad.last_report = report.as_text(result.report)
     return target

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..batch_jobs.settings import KINDS
 from ..core.mesh_io import WRITABLE
-from . import remesh_command
+from .setting_arguments import add_settings
 
 
 def add_to(commands: Any) -> None:
@@ -49,11 +49,14 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--summary-only", action="store_true", help="only write the summary of what has been run")
     parser.add_argument(
-        "--fail-above", type=float, metavar="PERCENT", help="exit with status 1 if more than this share has no result"
+        "--fail-above",
+        type=_percent,
+        metavar="PERCENT",
+        help="exit with status 1 if more than this share has no result",
     )
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     settings = parser.add_argument_group("settings")
-    remesh_command.add_settings(settings)
+    add_settings(settings)
     # Only what is given counts, so that settings of job files and objects are not hidden by defaults.
     parser.set_defaults(run=run, input="batch", **dict.fromkeys(KINDS))
 
@@ -63,6 +66,13 @@ def run(arguments: argparse.Namespace) -> int:
     from .batch_run import run_batch  # loads much that single runs, which start often, do without
 
     return run_batch(arguments)
+
+
+def _percent(text: str) -> float:
+    value = float(text)
+    if not 0 <= value <= 100:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and 100")
+    return value
 
 
 def _positive(text: str) -> int:

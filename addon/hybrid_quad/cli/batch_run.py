@@ -21,9 +21,10 @@ from ..batch_jobs.run_asset import BatchFault
 from ..batch_jobs.settings import KINDS, canonical
 from ..core import native
 from ..core.options import usable_threads
-from . import exit_codes, remesh_command
+from . import exit_codes
 from .batch_progress import BatchProgress
 from .messages import say
+from .setting_arguments import UsageProblem
 
 _HOUR = 3600.0
 
@@ -39,7 +40,7 @@ def run_batch(arguments: argparse.Namespace) -> int:
     try:
         return _run(arguments)
     except (BatchFault, JobFileError) as error:
-        raise remesh_command.UsageProblem(str(error)) from error
+        raise UsageProblem(str(error)) from error
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -79,7 +80,7 @@ def _defaults(arguments: argparse.Namespace) -> dict[str, Any]:
     try:
         return canonical(given, Path.cwd())
     except ValueError as error:
-        raise remesh_command.UsageProblem(str(error)) from error
+        raise UsageProblem(str(error)) from error
 
 
 def _chosen(arguments: argparse.Namespace, plan: BatchPlan) -> list[Asset]:
@@ -90,7 +91,7 @@ def _chosen(arguments: argparse.Namespace, plan: BatchPlan) -> list[Asset]:
             return list_lines(arguments.inputs[0], arguments.range, defaults, plan, objects)
         return in_range(list_assets(arguments.inputs, defaults, plan, objects), arguments.range)
     except ValueError as error:
-        raise remesh_command.UsageProblem(f"--range: {error}") from error
+        raise UsageProblem(f"--range: {error}") from error
 
 
 def _run_all(assets: Sequence[Asset], plan: BatchPlan, arguments: argparse.Namespace) -> bool:

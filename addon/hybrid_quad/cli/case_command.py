@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from ..batch_jobs.settings import KINDS, SettingError, canonical
-from ..core.mesh_io import MeshFileError, check_place
-from . import exit_codes, remesh_command
+from ..core.mesh_io import MeshFileError, check_apart, check_place
+from . import exit_codes
 from .messages import say
+from .setting_arguments import UsageProblem, add_settings
 
 
 def add_to(commands: Any) -> None:
@@ -39,7 +40,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--replay", metavar="CASE.zip", help="run a case again and say whether the same comes of it")
     parser.add_argument("--quiet", action="store_true", help="say nothing unless something is wrong")
     settings = parser.add_argument_group("settings", "those of remesh; the time limit is an hour where none is given")
-    remesh_command.add_settings(settings)
+    add_settings(settings)
     parser.set_defaults(run=run, **dict.fromkeys(KINDS))  # only what is given is put into the case
 
 
@@ -48,17 +49,19 @@ def run(arguments: argparse.Namespace) -> int:
     from ..batch_jobs.run_asset import BatchFault  # loads much that single runs, which start often, do without
 
     if (arguments.input is None) == (arguments.replay is None) or (arguments.replay is None) != bool(arguments.output):
-        raise remesh_command.UsageProblem("case: give either IN and --output CASE.zip, or --replay CASE.zip")
+        raise UsageProblem("case: give either IN and --output CASE.zip, or --replay CASE.zip")
     try:
         return _replay(arguments) if arguments.input is None else _pack(arguments)
     except (BatchFault, SettingError) as error:
-        raise remesh_command.UsageProblem(str(error)) from error
+        raise UsageProblem(str(error)) from error
 
 
 def _pack(arguments: argparse.Namespace) -> int:
     from ..cases import case_file, case_inputs, case_run
 
     check_place(arguments.output)
+    read = [getattr(arguments, name) for name, kind in KINDS.items() if kind == "file"]
+    check_apart(arguments.output, [arguments.input, *read])
     source, origin = Path(arguments.input).absolute(), _origin(arguments)
     settings = canonical({name: getattr(arguments, name) for name in KINDS}, Path.cwd())
     case_inputs.require_files(source, settings)

@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from ..core.check import check
-from ..core.mesh_io import read_line_elements, read_mesh, replacing
+from ..core.mesh_io import check_apart, check_place, read_line_elements, read_mesh, replacing
 from . import exit_codes
 from .messages import describe_defect, verdict_on
 
@@ -27,6 +27,9 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the defects of the input and returns the exit status."""
+    if arguments.report:
+        check_place(arguments.report)
+        check_apart(arguments.report, [arguments.input])
     vertices, polygons = read_mesh(arguments.input)
     defects = check(vertices, polygons, edges=read_line_elements(arguments.input))
     print(f"{arguments.input}: {len(vertices)} vertices, {len(polygons.sizes)} faces")

@@ -9,12 +9,14 @@ import signal
 import sys
 from collections.abc import Sequence
 from types import FrameType
+from typing import NoReturn
 
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_io import MeshFileError
 from . import batch_command, case_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
+from .setting_arguments import UsageProblem
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -48,6 +50,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         say(f"{options.input}: this machine has not enough memory for the run; nothing was written")
         return exit_codes.CANCELLED
+    except OSError as error:  # of a folder of stages, say: what else is read or written has errors of its own
+        say(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        return exit_codes.WRONG_USAGE
     except Exception as error:
         kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
         say(
@@ -59,15 +64,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return exit_codes.BUG
 
 
-UsageProblem = remesh_command.UsageProblem
-
-
 def _interrupt(_number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt("terminated")
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says in a line what is wrong, which the usage of thirty options would hide, and where to read on."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(exit_codes.WRONG_USAGE, f"{self.prog}: {message}\n{self.prog} --help tells more\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="hybrid-quad",
         description="Pure-quad remeshing of surface meshes.",
         epilog="Exit status: 0 done; 1 the input cannot be remeshed; 2 wrong usage or unreadable file; 3 internal "

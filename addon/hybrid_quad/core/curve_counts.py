@@ -22,14 +22,17 @@ def as_curve_counts(curve_counts: Iterable[CurveCount] | None) -> list[tuple[lis
         If a path or a number is not of integers.
     """
     counts = []
-    for path, count in () if curve_counts is None else curve_counts:
+    for each in () if curve_counts is None else curve_counts:
+        if not hasattr(each, "__len__") or len(each) != 2:
+            raise TypeError(f"curve_counts must be pairs of a path and a number, not {each!r}")
+        path, count = each
         vertices = np.asarray(path)
         if vertices.ndim != 1 or (vertices.size and vertices.dtype.kind not in "iu"):
             raise TypeError(f"a path of curve_counts must be vertex indices, not {path!r}")
         if not hasattr(count, "__index__") or isinstance(count, bool):
             raise TypeError(f"a number of curve_counts must be whole, not {count!r}")
-        limit = np.iinfo(np.int32).max
-        counts.append(([int(np.clip(v, -1, limit)) for v in vertices.tolist()], int(np.clip(int(count), -1, limit))))
+        low, high = np.iinfo(np.int32).min, np.iinfo(np.int32).max
+        counts.append(([min(max(v, -1), high) for v in vertices.tolist()], min(max(int(count), low), high)))
     return counts
 
 

@@ -54,7 +54,7 @@ def as_polygons(faces: FacesLike) -> Polygons:
     if isinstance(faces, Polygons):
         return Polygons(_as_indices(faces.sizes, "face sizes"), _as_indices(faces.vertices, "faces"))
     if not isinstance(faces, np.ndarray):
-        rows: list[Any] = list(faces)  # type: ignore[arg-type]
+        rows = _rows(faces, "faces must be an (m, k) array or a list of lists of vertices")
         sizes = np.fromiter((len(row) for row in rows), dtype=np.int32, count=len(rows))
         return Polygons(sizes, _as_indices(list(chain.from_iterable(rows)), "faces"))
     if faces.size == 0:
@@ -70,7 +70,7 @@ def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
     if edges is None:
         return np.zeros((0, 2), np.int32)
     if not isinstance(edges, np.ndarray):
-        edges = [tuple(edge) for edge in edges]  # type: ignore[union-attr, arg-type]
+        edges = [tuple(edge) for edge in _rows(edges, "sharp_edges must be a (k, 2) array or a list of vertex pairs")]
     array = np.asarray(edges)
     if array.size == 0:
         return np.zeros((0, 2), np.int32)
@@ -129,6 +129,13 @@ def unit_vectors(vectors: FloatArray) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     units: FloatArray = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
     return units
+
+
+def _rows(values: Any, message: str) -> list[Any]:
+    rows = list(values)
+    if not all(hasattr(row, "__len__") for row in rows):
+        raise ValueError(f"{message}, not a flat list")
+    return rows
 
 
 def _edge_keys(edges: IntArray, vertex_count: int) -> npt.NDArray[np.int64]:

@@ -12,7 +12,7 @@ import itertools
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -51,7 +51,7 @@ def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
     path = Path(path)
     reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_ply, ".stl": _read_stl}.get(path.suffix.lower())
     if reader is None:
-        raise MeshFileError(f"{path}: cannot read '{path.suffix}' files, only {', '.join(READABLE)}")
+        raise MeshFileError(f"{path}: {_unknown_kind(path)}; read are {', '.join(READABLE)}")
     try:
         return reader(path)
     except OSError as error:
@@ -86,8 +86,14 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     """Raises MeshFileError where `path` could never be written, so that no run is wasted on it."""
     path = Path(path)
     if path.suffix.lower() not in WRITABLE:
-        raise MeshFileError(f"{path}: cannot write '{path.suffix}' files, only {', '.join(WRITABLE)}")
+        raise MeshFileError(f"{path}: {_unknown_kind(path)}; written are {', '.join(WRITABLE)}")
     check_place(path)
+
+
+def _unknown_kind(path: Path) -> str:
+    if not path.suffix:
+        return "the name has no ending, which would say of what kind the file is"
+    return f"files of kind {path.suffix} are not known here"
 
 
 def check_place(path: str | os.PathLike[str]) -> None:
@@ -101,6 +107,15 @@ def check_place(path: str | os.PathLike[str]) -> None:
         raise MeshFileError(f"{path}: is no regular file")
     if not os.access(path.parent, os.W_OK):
         raise MeshFileError(f"{path}: the folder {path.parent} cannot be written to")
+
+
+def check_apart(path: str | os.PathLike[str] | None, others: Iterable[str | os.PathLike[str] | None]) -> None:
+    """Raises MeshFileError where `path`, which is to be written, is one of `others`, which are read or written by the same run."""
+    if path is None:
+        return
+    place = os.path.normcase(os.path.realpath(path))
+    if any(place == os.path.normcase(os.path.realpath(other)) for other in others if other):
+        raise MeshFileError(f"{path}: is named twice, and would be written over")
 
 
 @contextlib.contextmanager
@@ -299,7 +314,7 @@ def _umask() -> int:
 
 def read_text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8", errors="replace")
+        return path.read_text(encoding="utf-8-sig", errors="replace")  # Windows' programs put a mark before the text
     except OSError as error:
         raise MeshFileError(f"{path}: {error.strerror or error}") from error
 
@@ -338,7 +353,17 @@ def _index_of_corner(token: str, line_number: int) -> int:
 
 
 def _points_of_tokens(tokens: list[str]) -> FloatArray:
-    return np.array(tokens, dtype=object).astype(np.float64).reshape(-1, 3)
+    try:
+        return np.array(tokens, dtype=object).astype(np.float64).reshape(-1, 3)
+    except ValueError:
+        for place, token in enumerate(tokens):
+            try:
+                float(token)
+            except ValueError:
+                raise ValueError(
+                    f"vertex {place // 3}, counted from 0, has a coordinate that is no number: {token!r}"
+                ) from None
+        raise
 
 
 def _as_int32(values: list[int]) -> IntArray:

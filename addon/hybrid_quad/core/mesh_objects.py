@@ -75,6 +75,8 @@ def vertices_and_faces(vertices: npt.ArrayLike | MeshLike, faces: FacesLike | No
         As :func:`mesh_arrays` does.
     """
     if faces is None:
+        if isinstance(vertices, (np.ndarray, list, tuple)):
+            raise TypeError("faces are missing: give vertices and faces, or a mesh of trimesh, meshio or alike alone")
         return mesh_arrays(cast(MeshLike, vertices))
     return cast(npt.ArrayLike, vertices), faces
 

@@ -86,6 +86,8 @@ class RemeshOptions:
     memory_limit: float | None = None
 
     def __post_init__(self) -> None:
+        for name in (*_NUMBERS, *(name for name in _NUMBERS_OR_NONE if getattr(self, name) is not None)):
+            _require_number(name, getattr(self, name))
         _require(
             _is_integer(self.quads) and 1 <= self.quads <= MOST_QUADS,
             f"quads must be a whole number between 1 and {MOST_QUADS}, not {self.quads!r}",
@@ -129,16 +131,19 @@ class RemeshOptions:
         _require(
             self.symmetry_center in SYMMETRY_CENTERS
             if isinstance(self.symmetry_center, str)
-            else len(self.symmetry_center) == 3 and all(math.isfinite(value) for value in self.symmetry_center),
+            else hasattr(self.symmetry_center, "__len__")
+            and len(self.symmetry_center) == 3
+            and all(math.isfinite(value) for value in self.symmetry_center),
             f'symmetry_center must be "origin", "bounds" or a point, not {self.symmetry_center!r}',
         )
         _require(self.solver in SOLVERS, f"solver must be one of {', '.join(SOLVERS)}, not {self.solver!r}")
         _require(
-            _is_integer(self.seed) and 0 <= self.seed < 2**64, f"seed must be a whole number >= 0, not {self.seed!r}"
+            _is_integer(self.seed) and 0 <= self.seed < 2**64,
+            f"seed must be a whole number from 0 to {2**64 - 1}, not {self.seed!r}",
         )
         _require(
             _is_integer(self.threads) and 0 <= self.threads < 2**16,
-            f"threads must be a whole number >= 0, not {self.threads!r}",
+            f"threads must be a whole number from 0 to {2**16 - 1}, not {self.threads!r}",
         )
         _require(
             self.time_limit is None or (not math.isnan(self.time_limit) and self.time_limit > 0),
@@ -176,6 +181,15 @@ def usable_threads() -> int:
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
     return os.cpu_count() or 1
+
+
+_NUMBERS = ("field_smoothness", "adaptivity", "anisotropy", "size_fidelity")
+_NUMBERS_OR_NONE = ("edge_length", "sharp_angle", "chord_error", "time_limit", "memory_limit")
+
+
+def _require_number(name: str, value: object) -> None:
+    if not (hasattr(value, "__float__") or hasattr(value, "__index__")):
+        raise TypeError(f"{name} must be a number, not {value!r}")
 
 
 def _is_integer(value: object) -> bool:

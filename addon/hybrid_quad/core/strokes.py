@@ -230,7 +230,10 @@ class _Crosses:
 
 def _as_stroke(stroke: Stroke | npt.ArrayLike) -> Stroke:
     points, strength, kind = stroke if isinstance(stroke, Stroke) else (stroke, 1.0, "direction")
-    points = as_vertices(points)
+    try:
+        points = as_vertices(points)
+    except ValueError as error:
+        raise ValueError(f"strokes must be lines of points, (k, 3) each: {error}") from None
     if kind not in KINDS:
         raise ValueError(f"a stroke's kind must be one of {', '.join(KINDS)}, not {kind!r}")
     if not np.isfinite(points).all():

@@ -171,8 +171,10 @@ def _next(darts: IndexArray) -> IndexArray:
 
 
 def _without_area(points: FloatArray, faces: IndexArray) -> npt.NDArray[np.bool_]:
-    corners = points[faces]
     with np.errstate(invalid="ignore", over="ignore"):
+        # To about unit size, by a power of two, so that squares of any size are in range and no digit is lost.
+        largest = np.abs(points).max(where=np.isfinite(points), initial=0.0)
+        corners = np.ldexp(points, -np.frexp(largest)[1])[faces]
         area = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
         mean_edge = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean()
         flat: npt.NDArray[np.bool_] = area <= 1e-12 * mean_edge**2

@@ -21,6 +21,7 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kCountTolerance = 0.1;  // off by more, a warning says so
+constexpr double kLeastOfPlan = 0.5;     // no component pays with all its shape for what others cost
 
 /// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
 constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
@@ -110,6 +111,81 @@ std::vector<int> smallest_first(const std::vector<ComponentPlan>& plans) {
   return order;
 }
 
+double share_of_area(const RunPlan& run, std::size_t component) { return run.components[component].mesh.total_area() / run.area; }
+
+/// The part of a run's progress that a component takes. \param done, share  of the area: remeshed before it, and its own
+RunContext context_of_component(const RunContext& run, double done, double share) {
+  RunContext context = run;
+  context.stage_begin = run.stage_begin + (0.04 + 0.93 * done) * (run.stage_end - run.stage_begin);
+  context.stage_end = context.stage_begin + 0.93 * share * (run.stage_end - run.stage_begin);
+  return context;
+}
+
+/// Remeshes the components, the smallest first: what they cost more or less than planned, the others pay or get.
+std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex& whole, StageClock& clock) {
+  std::vector<ComponentResult> parts(run.components.size());
+  CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
+  WorkBudget work{kExtraWork + kExtraWorkPerQuad * run.wanted};
+  double done = 0;
+  for (const int i : smallest_first(run.plans)) {
+    ComponentPlan& plan = run.plans[i];
+    const double share = share_of_area(run, i), planned = plan.quads;
+    const RunContext context = context_of_component(run.context, done, share);
+    if (run.is_by_count) scale_plan(plan, budget.factor());
+    const double wanted = run.is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
+    parts[i] = remesh_component(plan, wanted, whole, run.wishes[i], run.guides, run.domain.options, work, clock, context);
+    budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
+    done += share;
+  }
+  open_flat_quads_of(parts, whole, run.context.threads);
+  return parts;
+}
+
+/// Vertices of the input that a component's vertices are; -1 for those that are none of it.
+std::vector<int> input_vertices_of(const RunPlan& run, std::size_t component, int input_vertex_count) {
+  std::vector<int> input_vertex;
+  for (const int v : run.components[component].vertex) {
+    const int in_soup = run.domain.input_vertex[v];
+    input_vertex.push_back(in_soup < input_vertex_count ? in_soup : -1);
+  }
+  // What halving long edges added; corners in folds, now and then.
+  input_vertex.resize(run.plans[component].mesh.vertex_count(), -1);
+  return input_vertex;
+}
+
+/// Puts the quads of all components, each with its mirror images, into one mesh. Returns the edges at guides.
+GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, const SurfaceIndex& whole, StageClock& clock,
+                            RemeshResult& result) {
+  RemeshReport& report = result.report;
+  GuidedEdges guided;
+  double singular_area = 0, combinatorial_area = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const ComponentPlan& plan = run.plans[i];
+    const auto with_images = [&] { return whole_of(parts[i], run.components[i].mesh, run.marked[i].ends, run.domain.options); };
+    run.counts.record(plan, on_curves_of(plan, parts[i]));
+    QuadMesh quads = with_images();
+    if (run.options.fit_limit_surface) {
+      clock.measure("limit surface", [&] {
+        const RunContext context = run.context.in_stage("limit surface", 0.97, 0.97);
+        const LimitFitReport fit =
+            fit_component(parts[i], quads, plan.mesh, run.domain.options.symmetry.planes, whole, context);
+        add_fit(report.limit_fit, fit, share_of_area(run, i), surface_of(run).diagonal());
+      });
+      quads = with_images();
+    }
+    append(result, quads, parts[i], input_vertices_of(run, i, report.input_vertices), run.images, guided);
+    report.fewest_quads += run.images * fewest_quads(plan.mesh);
+    report.features_given_way += run.images * parts[i].features_given_way;
+    singular_area += parts[i].singular_area;
+    combinatorial_area += parts[i].combinatorial_area;
+  }
+  report.quads = static_cast<int>(result.mesh.quads.size());
+  report.vertices = static_cast<int>(result.mesh.positions.size());
+  report.singular_area_fraction = singular_area / run.area;
+  report.patches.combinatorial_area_fraction = combinatorial_area / run.area;
+  return guided;
+}
+
 void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
                      const std::vector<ComponentResult>& parts, const SurfaceIndex& whole, const RunContext& context) {
   RemeshReport& r = result.report;
@@ -134,6 +210,29 @@ std::string count_warning(const RemeshReport& report, double wanted) {
   if (report.fewest_quads > wanted)
     return numbers + ": with so many parts, handles and holes there can't be fewer than " + std::to_string(report.fewest_quads);
   return numbers + ": features or small parts need another number";
+}
+
+/// What was asked and not met, and quads that want a look.
+void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, RemeshResult& result) {
+  const RemeshReport& report = result.report;
+  std::vector<std::string>& warnings = result.report.warnings;
+  if (std::abs(report.quads / run.wanted - 1) > kCountTolerance) warnings.push_back(count_warning(report, run.wanted));
+  if (report.features_given_way > 0)
+    warnings.push_back(std::to_string(report.features_given_way) +
+                       " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid "
+                       "quads: more quads, or marks, keep them");
+  const int lone = run.options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
+  if (lone > 0)
+    warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
+  if (report.flawed_quads > 0) {
+    const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
+    warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area" +
+                       (gave_up ? "; more tries would have taken too long" : ""));
+  }
+  for (std::string& warning : warnings_of(report.curve_counts)) warnings.push_back(std::move(warning));
+  if (run.images > 1)
+    for (std::string& warning : symmetry_warnings(run.domain, surface_of(run), result.mesh))
+      warnings.push_back(std::move(warning));
 }
 
 /// Where the way back rounds, corners are put exactly where the input has them.
@@ -170,97 +269,24 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   RemeshReport& report = result.report;
   StageClock clock;
   RunPlan run = plan_run(soup, scene_options, scene_context, report, clock);
-  const RemeshOptions& options = run.options;
-  const RunContext& context = run.context;
-  const BuiltMesh& built = run.input.built;
-  const RemeshDomain& domain = run.domain;
-  const HardGuides& guides = run.guides;
-  const UnitFrame& frame = run.frame;
-  const int images = run.images;
-  const std::vector<Component>& components = run.components;
-  const std::vector<MarkedEdges>& marked = run.marked;
-  const std::vector<Wishes>& wishes = run.wishes;
-  std::vector<ComponentPlan>& plans = run.plans;
-  CurveCountLedger& counts = run.counts;
-  const double area = run.area, wanted = run.wanted;
-  const bool is_by_count = run.is_by_count;
-
-  constexpr double kLeastOfPlan = 0.5;  // no component pays with all its shape for what others cost
-  const std::shared_ptr<const SurfaceIndex> index = index_of_whole(run);
-  const SurfaceIndex& whole = *index;
-  std::vector<ComponentResult> parts(components.size());
-  CountBudget budget(plans, is_by_count ? wanted / images : 0);
-  WorkBudget work{kExtraWork + kExtraWorkPerQuad * wanted};
-  double done = 0, singular_area = 0, combinatorial_area = 0;
-  for (const int i : smallest_first(plans)) {
-    const double share = components[i].mesh.total_area() / area;
-    RunContext part_context = context;
-    part_context.stage_begin = context.stage_begin + (0.04 + 0.93 * done) * (context.stage_end - context.stage_begin);
-    part_context.stage_end = part_context.stage_begin + 0.93 * share * (context.stage_end - context.stage_begin);
-    const double planned = plans[i].quads;
-    if (is_by_count) scale_plan(plans[i], budget.factor());
-    const double wanted_here = is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plans[i].quads) : planned;
-    parts[i] = remesh_component(plans[i], wanted_here, whole, wishes[i], guides, domain.options, work, clock, part_context);
-    budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
-    done += share;
-  }
-  open_flat_quads_of(parts, whole, context.threads);
-  GuidedEdges guided;
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    counts.record(plans[i], on_curves_of(plans[i], parts[i]));
-    std::vector<int> input_vertex;
-    for (const int v : components[i].vertex)
-      input_vertex.push_back(domain.input_vertex[v] < report.input_vertices ? domain.input_vertex[v] : -1);
-    input_vertex.resize(plans[i].mesh.vertex_count(), -1);  // what halving long edges added; corners in folds, now and then
-    QuadMesh quads = whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options);
-    if (options.fit_limit_surface) {
-      const double share = components[i].mesh.total_area() / area;
-      clock.measure("limit surface", [&] {
-        const RunContext fit_context = context.in_stage("limit surface", 0.97, 0.97);
-        const PlaneSet planes = domain.options.symmetry.planes;
-        const LimitFitReport fit = fit_component(parts[i], quads, plans[i].mesh, planes, whole, fit_context);
-        add_fit(report.limit_fit, fit, share, built.mesh.diagonal());
-      });
-      quads = whole_of(parts[i], components[i].mesh, marked[i].ends, domain.options);
-    }
-    append(result, quads, parts[i], input_vertex, images, guided);
-    singular_area += parts[i].singular_area;
-    combinatorial_area += parts[i].combinatorial_area;
-  }
-  report.singular_area_fraction = singular_area / area;
-  report.patches.combinatorial_area_fraction = combinatorial_area / area;
-  report.quads = static_cast<int>(result.mesh.quads.size());
-  report.vertices = static_cast<int>(result.mesh.positions.size());
-  for (const ComponentPlan& plan : plans) report.fewest_quads += images * fewest_quads(plan.mesh);
-  if (std::abs(report.quads / wanted - 1) > kCountTolerance) report.warnings.push_back(count_warning(report, wanted));
-  for (const ComponentResult& part : parts) report.features_given_way += images * part.features_given_way;
-  if (report.features_given_way > 0)
-    report.warnings.push_back(std::to_string(report.features_given_way) +
-                              " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid quads: more quads, or marks, keep them");
-  const int lone = options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
-  if (lone > 0)
-    report.warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
-  if (report.flawed_quads > 0) {
-    const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
-    report.warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area" +
-                              (gave_up ? "; more tries would have taken too long" : ""));
-  }
-  report.curve_counts = counts.records();
-  for (std::string& warning : warnings_of(report.curve_counts)) report.warnings.push_back(std::move(warning));
-  if (images > 1) {
-    for (std::string& warning : symmetry_warnings(domain, built.mesh, result.mesh)) report.warnings.push_back(std::move(warning));
+  const std::shared_ptr<const SurfaceIndex> whole = index_of_whole(run);
+  std::vector<ComponentResult> parts = remesh_components(run, *whole, clock);
+  const GuidedEdges guided = join_components(run, parts, *whole, clock, result);
+  report.curve_counts = run.counts.records();
+  add_warnings(run, parts, result);
+  if (run.images > 1) {
     const std::vector<std::string> violations = violations_of(result.mesh);
     if (!violations.empty()) throw InternalError("symmetry", violations.front());
   }
   clock.measure("quality", [&] {
-    report.guides = measure_guides(options.strokes, guides.traces, result.mesh, guided, report.warnings);
+    report.guides = measure_guides(run.options.strokes, run.guides.traces, result.mesh, guided, report.warnings);
     for (GuideRecord& guide : report.guides) {
-      guide.fit.length *= frame.scale;
-      guide.fit.edge_length *= frame.scale;
+      guide.fit.length *= run.frame.scale;
+      guide.fit.edge_length *= run.frame.scale;
     }
-    measure_quality(result, plans, parts, whole, context.in_stage("quality", 0.97, 1.0));
+    measure_quality(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });
-  move_outward(frame, soup, result.mesh);
+  move_outward(run.frame, soup, result.mesh);
   report.stages = clock.records;
   return result;
 }
