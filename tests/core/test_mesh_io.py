@@ -209,6 +209,7 @@ def test_binary_stl(tmp_path):
         ("a.obj", "v 0 0 0\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n", "zero"),
         ("a.obj", "v 0 0 0\nv 1 0\n", "line 2"),
         ("a.obj", "v 0 0 0\nf 1 two 3\n", "line 2"),
+        ("a.obj", b"v 0 0 0\r\nv 1 \\\r\n 0 0\r\nf 1 2 \xff\xfe\r\n", r"line 4: '\?\?'"),
         ("a.off", "OOPS\n", "OFF"),
         ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends before"),
         ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "fewer"),
