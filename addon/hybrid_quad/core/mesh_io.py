@@ -12,7 +12,7 @@ import itertools
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -333,15 +333,23 @@ def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
     if not lines[0]:
         del lines[0]
     vertex_count, face_count = int(lines[0][0]), int(lines[0][1])
-    if len(lines) < 1 + vertex_count + face_count:
-        raise ValueError(f"ends before all of its {vertex_count} vertices and {face_count} faces")
-    positions = [token for line in lines[1 : 1 + vertex_count] for token in line[:3]]
-    faces = lines[1 + vertex_count : 1 + vertex_count + face_count]
-    sizes = np.array([int(line[0]) for line in faces], np.int32)
-    corners = [int(token) for line in faces for token in line[1 : 1 + int(line[0])]]
-    if len(corners) != int(sizes.sum()):
-        raise ValueError("a face lists fewer vertices than it says")
+    rows = iter(lines[1:])
+    positions = [token for _ in range(vertex_count) for token in _off_row(rows, lambda _: 3)[:3]]
+    faces = [_off_row(rows, lambda size: 1 + int(size)) for _ in range(face_count)]
+    sizes = _as_int32([int(face[0]) for face in faces])
+    corners = [int(token) for face, size in zip(faces, sizes.tolist(), strict=True) for token in face[1 : 1 + size]]
     return _points_of_tokens(positions), Polygons(sizes, _as_int32(corners))
+
+
+def _off_row(rows: Iterator[list[str]], width: Callable[[str], int]) -> list[str]:
+    """The next row, with what follows on further lines where its own has fewer tokens than its first one calls for."""
+    row: list[str] = []
+    while not row or len(row) < width(row[0]):
+        following = next(rows, None)
+        if following is None:
+            raise ValueError("ends before all of its vertices and faces")
+        row = row + following if row else following
+    return row
 
 
 def _read_ply(path: Path) -> tuple[FloatArray, Polygons]:
