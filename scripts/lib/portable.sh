@@ -89,6 +89,7 @@ exec '$zig' $name ${target[*]} \"\$@\""
   # Debian's /usr/include also has the headers of Debian's glibc, which must not be seen.
   mkdir -p "$PORTABLE/include"
   ln -sfn /usr/include/Spectra "$PORTABLE/include/Spectra"
+  ln -sfn /usr/include/fast_float "$PORTABLE/include/fast_float"
 }
 
 # private_apt SUITE KIND WORD...: apt-get with one of Debian's suites, which the system's own apt does not get to know.
@@ -203,6 +204,7 @@ collect_licences() {
   cp "$PORTABLE/opensubdiv-$OPENSUBDIV/NOTICE.txt" "$folder/OpenSubdiv-NOTICE.txt"
   cp /usr/share/doc/libeigen3-dev/copyright "$folder/Eigen.txt"
   cp /usr/share/doc/libspectra-dev/copyright "$folder/Spectra.txt"
+  cp /usr/share/doc/libfast-float-dev/copyright "$folder/fast_float.txt"
   cp "$site"/pybind11-*.dist-info/licenses/LICENSE "$folder/pybind11.txt"
   cp "$site/ziglang/lib/libcxx/LICENSE.TXT" "$folder/libcxx.txt"
 }

@@ -7,7 +7,7 @@ VENV=$ROOT/.venv
 PYTHON=/usr/bin/python3
 ADDON=$ROOT/addon/hybrid_quad
 
-BUILD_PACKAGES=(g++ cmake ninja-build ccache libeigen3-dev libspectra-dev libosd-dev python3 python3-venv python3-dev)
+BUILD_PACKAGES=(g++ cmake ninja-build ccache libeigen3-dev libspectra-dev libfast-float-dev libosd-dev python3 python3-venv python3-dev)
 BLENDER_PACKAGES=(blender python3-numpy)
 TEST_PACKAGES=(libgtest-dev python3-pytest)
 

@@ -91,6 +91,14 @@ def test_off_with_polygons_comments_and_colours(tmp_path):
     assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
 
 
+@pytest.mark.parametrize("faces", ["4 0 1 2 3\n3 1 4 2\n", "4\n0 1\n2\n3\n3 1\n4 2\n"])
+def test_rows_of_off_may_go_on_in_further_lines(tmp_path, faces):
+    text = "OFF\n5 2 0\n0 0 0\n1 0\n0\n1 1 0\n0 1 0\n2 0 0\n" + faces
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.off", text))
+    assert vertices.tolist()[1] == [1, 0, 0]
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
+
+
 PLY = """ply
 format ascii 1.0
 element vertex 5
@@ -167,11 +175,30 @@ def test_a_ply_file_cut_anywhere_is_refused(tmp_path, form):
             read_mesh(file_with(tmp_path, "a.ply", whole[:end]))
 
 
-def test_ply_faces_that_are_strips_or_no_numbers_of_vertices_are_refused(tmp_path):
-    strips = PLY.replace("element face 2", "element tristrips 2")
-    for text, reason in ((strips, "strips"), (PLY.replace("uchar int", "uchar float"), "vertex_indices")):
-        with pytest.raises(MeshFileError, match=reason):
-            read_mesh(file_with(tmp_path, "a.ply", text))
+def test_ply_faces_that_are_no_numbers_of_vertices_are_refused(tmp_path):
+    with pytest.raises(MeshFileError, match="vertex_indices"):
+        read_mesh(file_with(tmp_path, "a.ply", PLY.replace("uchar int", "uchar float")))
+
+
+@pytest.mark.parametrize(
+    ("strips", "triangles"),
+    [
+        (["0 1 2 3 4"], [[0, 1, 2], [2, 1, 3], [2, 3, 4]]),
+        (["0 1 2 -1 1 3 2 4"], [[0, 1, 2], [1, 3, 2], [2, 3, 4]]),
+        (["0 1 2", "1 2 3 4"], [[0, 1, 2], [1, 2, 3], [3, 2, 4]]),
+        (["0 1 2 2 1 1 1 3 2 4"], [[0, 1, 2], [1, 3, 2], [2, 3, 4]]),  # joined by triangles without area
+        (["0 1", "-1", "2 -1 3 4"], []),
+    ],
+)
+def test_strips_of_ply_turn_the_way_their_first_triangle_does(tmp_path, strips, triangles):
+    text = (
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element tristrips {len(strips)}\nproperty list int int vertex_indices\nend_header\n"
+        + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n"
+        + "".join(f"{len(strip.split())} {strip}\n" for strip in strips)
+    )
+    _, polygons = read_mesh(file_with(tmp_path, "a.ply", text))
+    assert rows(polygons) == triangles
 
 
 def test_stl_of_either_kind_is_one_mesh_with_shared_corners(tmp_path):
@@ -222,9 +249,10 @@ def test_a_mark_of_the_byte_order_before_the_text_is_none_of_it(tmp_path, suffix
         ("noending", "", "no ending"),
         ("a.obj", "v 0 0 0\nv 1 0\n", "line 2"),
         ("a.obj", "v 0 0 0\nf 1 two 3\n", "line 2"),
+        ("a.obj", b"v 0 0 0\r\nv 1 \\\r\n 0 0\r\nf 1 2 \xff\xfe\r\n", r"line 4: '\?\?'"),
         ("a.off", "OOPS\n", "OFF"),
         ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends before"),
-        ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "fewer"),
+        ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "ends before"),
         ("a.off", "4OFF\n0 0 0\n", "4OFF"),
         ("a.ply", b"\x00\x01\x02", "PLY"),
         ("a.ply", PLY[:-12], "PLY"),

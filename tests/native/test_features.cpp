@@ -125,6 +125,17 @@ TEST(Features, NoiseOfAScanIsNoFeature) {
   }
 }
 
+TEST(Features, NeitherIsItWhereQuadsAreAsSmallAsItsTriangles) {
+  for (const double size : {0.25, 0.35}) {
+    const TriangleMesh m = with_noise(test::icosphere(5), size, 7);
+    FeatureOptions options;
+    for (const double quads : {8000.0, 20000.0, 40000.0}) {
+      options.minimum_length = 3 * std::sqrt(m.total_area() / quads);
+      EXPECT_LT(length_of(detect(m, options), m), 0.01 * length_of(detect(m), m)) << size << ' ' << quads;
+    }
+  }
+}
+
 TEST(Features, CreasesOutliveNoise) {
   const TriangleMesh clean = test::box(30);
   for (const double size : {0.05, 0.1, 0.15}) {

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..core import mesh_io, picture, report
+from ..core import mesh_io, report
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_arrays import FloatArray
 from ..core.options import RemeshOptions
@@ -59,6 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         result, mesh = _remesh(arguments, options, started)
         if arguments.picture:
+            from ..core import picture
+
             picture.write_picture(arguments.picture, result.vertices, result.quads)
     except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:
         _write_failure(arguments, options, error)

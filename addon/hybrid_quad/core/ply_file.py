@@ -66,15 +66,14 @@ def read_ply(data: bytes) -> tuple[FloatArray, IntRow, IntRow]:
     Raises
     ------
     ValueError
-        If it is no PLY file, or ends too early, or its faces are triangle strips.
+        If it is no PLY file, or ends too early.
     """
     order, elements, body = _header(data)
     rows = _BinaryRows(body, order) if order else _TextRows(body)
     vertices: FloatArray = np.zeros((0, 3))
     sizes, corners = np.zeros(0, np.int64), np.zeros(0, np.int64)
-    names = [element.name for element in elements]
-    if "tristrips" in names and "face" not in names:
-        raise ValueError("its faces are triangle strips, which are not read")
+    names = {element.name for element in elements}
+    strips = "" if "face" in names else "tristrips"
     for element in elements:
         if element.name == "vertex":
             places = [_place_of(element, (axis,)) for axis in "xyz"]
@@ -82,9 +81,29 @@ def read_ply(data: bytes) -> tuple[FloatArray, IntRow, IntRow]:
             vertices = np.stack([np.asarray(values, np.float64) for _, values in columns], axis=1)
         elif element.name == "face":
             ((sizes, corners),) = rows.take(element, [_place_of(element, _CORNERS)])
+        elif element.name == strips:
+            triangles = _triangles_of_strips(*rows.take(element, [_place_of(element, _CORNERS)])[0])
+            sizes, corners = np.full(len(triangles), 3), triangles.reshape(-1)
         else:
             rows.take(element, [])
     return vertices, sizes, corners
+
+
+def _triangles_of_strips(lengths: IntRow, vertices: IntRow) -> IntRow:
+    """Triangles (m, 3) of strips: of each three in a row, every second one the other way round; -1 begins a new strip.
+
+    Those that use a vertex twice, which only lead from one part of a strip to the next, are left out.
+    """
+    ends = np.cumsum(lengths)
+    broken = np.insert(vertices.astype(np.int64), ends, -1)  # as if all were one list
+    last_break = np.maximum.accumulate(np.where(broken < 0, np.arange(len(broken)), -1))
+    triples = np.stack([broken[:-2], broken[1:-1], broken[2:]], axis=1)
+    is_odd = (np.arange(len(triples)) - last_break[: len(triples)]) % 2 == 0
+    triples[is_odd] = triples[is_odd][:, [1, 0, 2]]
+    first, second, third = triples.T
+    has_area = (triples >= 0).all(axis=1) & (first != second) & (second != third) & (third != first)
+    triangles: IntRow = triples[has_area]
+    return triangles
 
 
 def _place_of(element: _Element, names: Sequence[str]) -> int:

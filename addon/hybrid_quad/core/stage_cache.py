@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -66,6 +65,8 @@ def lent_by(cache: StageCache | None, asked: Mapping[str, Any]) -> AbstractConte
 
 def _keys_of(asked: Mapping[str, Any]) -> list[str]:
     """Digests of the surface, of all that is asked but directions, and of all."""
+    import hashlib  # loads OpenSSL, which runs without a cache do without
+
     plan = [name for name in asked if name not in (*_SURFACE, *_DIRECTIONS, *_NO_MATTER)]
     state = hashlib.blake2b(digest_size=16)
     keys = []

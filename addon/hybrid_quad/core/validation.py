@@ -155,8 +155,9 @@ def _check_connectivity(found: list[str], darts: _Darts) -> None:
         np.concatenate([first, _next(first)]),
         np.concatenate([_next(second), second]),
     )
-    fans = np.unique(darts.origin * len(label) + label) // len(label)
-    _note(found, "vertices whose faces form more than one fan", np.bincount(fans, minlength=darts.vertex_count) > 1)
+    is_first_of_fan = label == np.arange(len(label))
+    fans = np.bincount(darts.origin[is_first_of_fan], minlength=darts.vertex_count)
+    _note(found, "vertices whose faces form more than one fan", fans > 1)
     _note(found, "interior vertices with fewer than three faces", (valence > 0) & (valence < 3) & ~on_boundary)
     here, there = faces_of_dart[first], faces_of_dart[second]
     pairs, times = np.unique(np.minimum(here, there) * len(darts.origin) + np.maximum(here, there), return_counts=True)

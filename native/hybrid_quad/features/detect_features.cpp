@@ -6,6 +6,7 @@
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/features/crease_clarity.h"
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/features/parting_angle.h"
 #include "hybrid_quad/features/small_facets.h"
 
 namespace hybrid_quad {
@@ -143,11 +144,17 @@ double FeatureDetector::angle(int h) const {
 void FeatureDetector::mark_by_angle(const RunContext& context) {
   if (!options_.use_sharp_angle || options_.sharp_angle > 180) return;
   compute_normals();
-  const double limit = options_.sharp_angle * kDegree;
+  std::vector<int> halfedges;
+  std::vector<BentEdge> edges;
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
     if ((h & 0xffff) == 0) context.checkpoint(0.3 * h / mesh_.halfedge_count());
-    if (!mesh_.is_boundary(h) && stands_for_edge(h) && angle(h) > limit) set(by_angle_, h, 1);
+    if (mesh_.is_boundary(h) || marked_[h] || !stands_for_edge(h)) continue;
+    halfedges.push_back(h);
+    edges.push_back({angle(h) / kDegree, length(h)});
   }
+  const double limit = options_.minimum_length > 0 ? parting_angle(edges, options_.sharp_angle) : options_.sharp_angle;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (edges[i].angle > limit) set(by_angle_, halfedges[i], 1);
 }
 
 int FeatureDetector::feature_degree(int v) const {

@@ -27,12 +27,12 @@ struct FeatureGraph {
 };
 
 struct FeatureOptions {
-  double sharp_angle = 40.0;     ///< degrees between face normals; > 180 (or use_sharp_angle false) takes none
+  double sharp_angle = 40.0;     ///< degrees between face normals, more where it tells nothing apart (parting_angle.h); > 180 (or use_sharp_angle false) takes none
   bool use_sharp_angle = true;
   double weak_angle = 20.0;      ///< hysteresis: a chain of weaker edges is kept where it joins strong ones
   /// Scene units; about three edges of the quads to come. Connected edges by angle that are shorter than this, counting only
   /// what is clearly a crease seen from a sixth of it away, are taken for noise of a sculpt or scan; of a closed curve that is clear
-  /// all around, two thirds are enough. 0: all are kept.
+  /// all around, two thirds are enough. 0: all above the sharp angle are kept.
   double minimum_length = 0.0;
   double corner_angle = 100.0;   ///< degrees between consecutive edges of a curve below which its vertex is a corner
   std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped

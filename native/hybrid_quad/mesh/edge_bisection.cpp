@@ -66,12 +66,13 @@ void split_edges_with_common_ends(EditableMesh& edited) {
     for (int h = 0; h < edited.halfedge_slots(); ++h)
       if (edited.is_face(h / 3) && edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
     std::sort(edges.begin(), edges.end());
-    // One at a time of each face: splitting renames half-edges.
+    // One at a time of each face, none of the faces that come from it: splitting renames half-edges.
     std::vector<char> is_touched(edited.face_slots(), 0);
+    const auto may_be_renamed = [&](int h) { return h / 3 >= static_cast<int>(is_touched.size()) || is_touched[h / 3]; };
     for (std::size_t i = 1; i < edges.size(); ++i) {
       if (edges[i].first != edges[i - 1].first) continue;
       const int h = edges[i].second, o = edited.opposite(h);
-      if (is_touched[h / 3] || (o >= 0 && is_touched[o / 3])) continue;
+      if (may_be_renamed(h) || (o >= 0 && may_be_renamed(o))) continue;
       is_touched[h / 3] = 1;
       if (o >= 0) is_touched[o / 3] = 1;
       edited.split_edge(h, 0.5 * (edited.position(edited.from(h)) + edited.position(edited.to(h))));
