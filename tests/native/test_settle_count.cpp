@@ -79,6 +79,15 @@ TEST(SettleCount, FewerFlawedQuadsAreWorthMoreThanANearerNumber) {
   EXPECT_TRUE(may_take_place_of(state(700, 4), state(736, 4), now, at_first));
 }
 
+/// Forty chains of marked edges hold 1025 quads where 466 are wanted: four less are not worth an improvement, 300 are.
+TEST(SettleCount, NextToNothingIsNotWorthImproving) {
+  const auto error = [](double quads, double wanted) { return std::abs(std::log(quads / wanted)); };
+  EXPECT_FALSE(is_worth_improving(error(1021, 466), error(1025, 466)));
+  EXPECT_TRUE(is_worth_improving(error(721, 466), error(1025, 466)));
+  EXPECT_FALSE(is_worth_improving(error(1025, 466), error(1021, 466))) << "farther off";
+  EXPECT_TRUE(is_worth_improving(error(105, 100), error(108, 100))) << "little, but much of what was missing";
+}
+
 TEST(SettleCount, HandlesTakeFewQuads) {
   const RemeshResult result = remeshed(test::soup_of(test::torus(60, 30)), 24);
   EXPECT_TRUE(violations_of(result.mesh).empty());

@@ -83,6 +83,53 @@ TEST(WorkingSurface, NeedleCapsBecomeRegular) {
   EXPECT_LT(farthest_from(input, w.mesh), 0.06 * 0.15);
 }
 
+/// The mesh with two vertices in the place of from(h), and where the edge h was between them and to(h) a fin of two coinciding faces
+/// whose third corner is `tip`: the edge between the two cannot be collapsed as long as the fin is there.
+TriangleMesh with_fin(const TriangleMesh& m, int h, const Vector3& tip) {
+  std::vector<Vector3> positions = m.positions();
+  std::vector<std::array<int, 3>> faces = m.faces();
+  const int a = m.from(h), w = m.to(h), b = m.vertex_count(), z = b + 1;
+  positions.push_back(m.position(a));
+  positions.push_back(tip);
+  int k = h;
+  for (int i = 0; i < 2; ++i, k = m.rotate_ccw(k)) faces[k / 3][k % 3] = b;
+  faces.push_back({a, b, m.to(k)});
+  faces.push_back({z, b, a});
+  faces.push_back({z, a, w});
+  faces.push_back({z, w, b});
+  return TriangleMesh(std::move(positions), std::move(faces));
+}
+
+TEST(WorkingSurface, EdgesWithoutLengthAtFinsLeaveNoFaceWithoutArea) {
+  const TriangleMesh box = test::box(2, Vector3(1, 1, 1));
+  for (int h = 0; h < box.halfedge_count(); ++h) {
+    const Vector3 along = box.edge_vector(h), n = box.area_normal(h / 3).normalized();
+    if (n.dot(box.area_normal(box.opposite(h) / 3)) <= 0) continue;  // an edge of the box
+    for (const double height : {1e-8, 1e-4, 0.1}) {
+      SCOPED_TRACE("half-edge " + std::to_string(h) + ", height " + std::to_string(height));
+      remesh(with_fin(box, h, box.position(box.from(h)) + 0.01 * along + height * n), 0.2);
+    }
+  }
+}
+
+TEST(WorkingSurface, FinsAtAnEdgeWithoutLengthGoWhereTheyAreNoFeature) {
+  const TriangleMesh box = test::box(2, Vector3(1, 1, 1));
+  int tried = 0, kept = 0;
+  FeatureOptions no_angles;
+  no_angles.use_sharp_angle = false;
+  for (int h = 0; h < box.halfedge_count(); ++h) {
+    const Vector3 along = box.edge_vector(h), n = box.area_normal(h / 3).normalized();
+    if (n.dot(box.area_normal(box.opposite(h) / 3)) <= 0) continue;
+    const TriangleMesh input = with_fin(box, h, box.position(box.from(h)) + 0.01 * along + 1e-4 * n);
+    const FeatureGraph features = detect_features(input, no_angles, RunContext{});
+    const WorkingSurface w =
+        build_working_surface(input, features, std::vector<double>(input.vertex_count(), 0.2), {}, RunContext{});
+    ++tried;
+    kept += w.mesh.total_area() > box.total_area() * (1 + 1e-6);
+  }
+  EXPECT_LE(10 * kept, tried);
+}
+
 TEST(WorkingSurface, KeepsBoundariesAndTheirDirection) {
   const TriangleMesh input = test::open_cylinder(64, 20);
   const Remeshed r = remesh(input, 0.3);

@@ -53,8 +53,9 @@ class CountSettling {
     const int quads = static_cast<int>(mesh.quads.size());
     return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()),
             static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()), missed_counts(plan_.features, mesh),
-            std::abs(std::log(quads / wanted_))};
+            error_of(quads)};
   }
+  double error_of(int quads) const { return std::abs(std::log(quads / wanted_)); }
 
   bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
   double tolerance() const { return std::max(1.0, kAim * wanted_); }
@@ -75,7 +76,7 @@ class CountSettling {
   int change_rows() {
     QuadComplex complex = complex_of(result_.mesh);
     const int rows = fit_quad_count(complex, wanted_, tolerance(), counted_);
-    if (rows == 0) return 0;
+    if (rows == 0 || !is_worth_improving(error_of(complex.quad_count()), now_.error)) return 0;
     QuadMesh mesh = to_quad_mesh(complex);
     order_feature_edges(mesh, plan_.mesh, plan_.features);
     return take_if_nearer(improved(std::move(mesh))) ? rows : 0;
@@ -93,10 +94,12 @@ class CountSettling {
       if (changed == 0) return false;
       target = now_.quads + changed / 2;
       finishing_.make_mirrorable(bare, context_);
-      if (take_if_nearer(bare) || (may_improve() && take_if_nearer(improved(std::move(bare))))) {
+      const bool is_worth_it = is_worth_improving(error_of(static_cast<int>(bare.quads.size())), now_.error);
+      if (take_if_nearer(bare) || (is_worth_it && may_improve() && take_if_nearer(improved(std::move(bare))))) {
         result_.repairs.fitted_quads += std::abs(changed);
         return true;
       }
+      if (!is_worth_it) return false;  // nor is a half of it
     }
     return false;
   }
@@ -134,6 +137,11 @@ class CountSettling {
 bool may_take_place_of(const SettledState& then, const SettledState& now, double most_error, double error_at_first) {
   if (then.flawed > now.flawed || then.doubtful > now.doubtful || then.missed > now.missed) return false;
   return then.error <= (then.flawed < now.flawed ? std::max(most_error, error_at_first) : most_error);
+}
+
+bool is_worth_improving(double error_then, double error_now) {
+  constexpr double kWorth = 0.1;
+  return error_then <= (1 - kWorth) * error_now;
 }
 
 void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "hybrid_quad/mesh/segment_index.h"
 #include "hybrid_quad/working_surface/surface_remesher.h"
@@ -15,6 +17,7 @@ constexpr double kThin = 0.01;           ///< over h: the normal of a face of le
 constexpr double kNormalCosine = 0.7;    ///< a face may turn by 45 degrees when a vertex goes
 constexpr double kSameCosine = 0.97;    ///< normals that agree so well cannot hide that a surface leaves the input
 constexpr double kStill = 0.03;          ///< over h: vertices do not move by less
+constexpr double kHair = 1e-6;           ///< of the way to the middle of a face: opens a face without area
 constexpr double kPoorShape = 0.25;      ///< shape below which a collapse may not make a triangle worse
 
 /// 1 for an equilateral triangle, 0 for one without area.
@@ -107,8 +110,11 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
   };
   bool keeps = true, turns = false;
   double nearest2 = std::numeric_limits<double>::infinity(), worst_before = 1;
+  int flat_before = 0, flat_after = 0;  // faces without area
   mesh_.visit_outgoing(a, [&](int k) {
-    worst_before = std::min(worst_before, shape(p, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k))));
+    const double shape_before = shape(p, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k)));
+    worst_before = std::min(worst_before, shape_before);
+    flat_before += !(shape_before > 0);
   });
   mesh_.visit_outgoing(a, [&](int k) {
     const int f = k / 3;
@@ -120,9 +126,15 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const Vector3 reference = thin ? region_normal(mesh_.region(f)) : before;
     const double new_shape = shape(q, x, y, size_after);
     turns |= after.dot(reference) < kSameCosine * size_after * reference.norm();
-    keeps = size_after > 0 && after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
-            (new_shape >= kPoorShape || new_shape > kMore * worst_before) &&
-            ((x - q).norm() <= too_long || (x - q).norm() <= kMore * (x - p).norm() || on_curve);
+    // A fin at an edge without length goes before the edge can, and leaves a face without area as it had one.
+    const bool is_flat = !(size_after > 0);
+    flat_after += is_flat;
+    if (is_flat)
+      keeps = flat_after <= flat_before;
+    else
+      keeps = after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
+              (new_shape >= kPoorShape || new_shape > kMore * worst_before) &&
+              ((x - q).norm() <= too_long || (x - q).norm() <= kMore * (x - p).norm() || on_curve);
     nearest2 = std::min(nearest2, (nearest_on_triangle(p, q, x, y) - p).squaredNorm());
   });
   if (!keeps) return false;
@@ -274,6 +286,33 @@ void SurfaceRemesher::relax_vertex(int v) {
     vertex_[v].error = 0;
     return;
   }
+}
+
+/// Moves a corner of f, rather a free one, by a hair into one of its other faces, so that f has an area and none has lost its own.
+bool SurfaceRemesher::try_open(int f) {
+  const auto rank = [this](int v) { return vertex_[v].is_corner ? 2 : vertex_[v].on_feature ? 1 : 0; };
+  const auto is_flat = [this](int k) { return !(mesh_.area_normal(k).norm() > 0); };
+  std::array<int, 3> corners{mesh_.from(3 * f), mesh_.from(3 * f + 1), mesh_.from(3 * f + 2)};
+  std::stable_sort(corners.begin(), corners.end(), [&](int v, int w) { return rank(v) < rank(w); });
+  for (const int v : corners) {
+    const Vector3 p = mesh_.position(v);
+    std::vector<int> flat;
+    std::vector<Vector3> middles;
+    mesh_.visit_outgoing(v, [&](int h) {
+      if (is_flat(h / 3)) flat.push_back(h / 3);
+      middles.push_back((p + mesh_.position(mesh_.to(h)) + mesh_.position(mesh_.apex(h))) / 3);
+    });
+    for (const Vector3& middle : middles) {
+      mesh_.set_position(v, p + kHair * (middle - p));
+      bool opens = !is_flat(f);
+      mesh_.visit_outgoing(v, [&](int h) {
+        opens = opens && (!is_flat(h / 3) || std::find(flat.begin(), flat.end(), h / 3) != flat.end());
+      });
+      if (opens) return true;
+    }
+    mesh_.set_position(v, p);
+  }
+  return false;
 }
 
 }  // namespace hybrid_quad

@@ -75,6 +75,7 @@ void SurfaceRemesher::run() {
   split_edges_between_features();
   flip_edges();
   relax();
+  open_faces_without_area();
   renumber();
   context_.checkpoint(0.95);
 }
@@ -180,6 +181,12 @@ void SurfaceRemesher::flip_edges() {
     for (const int k : {EditableMesh::next(h), EditableMesh::previous(h), EditableMesh::next(o), EditableMesh::previous(o)})
       stack.push_back(k);
   }
+}
+
+/// Where neither a collapse nor a flip could remove a face without area, one of its corners moves by a hair.
+void SurfaceRemesher::open_faces_without_area() {
+  for (int f = 0; f < mesh_.face_slots(); ++f)
+    if (mesh_.is_face(f) && !(mesh_.area_normal(f).norm() > 0)) try_open(f);
 }
 
 /// One colour after the other: vertices of a colour have no face in common, so that each moves as if alone.

@@ -47,6 +47,7 @@ class SurfaceRemesher {
   void split_edges_between_features();
   void flip_edges();
   void relax();
+  void open_faces_without_area();
   void renumber();
   std::vector<std::vector<int>> free_vertices_by_colour() const;
 
@@ -59,6 +60,7 @@ class SurfaceRemesher {
   bool wants_flip(int h) const;
   bool flip_keeps_shape(int h) const;
   void relax_vertex(int v);
+  bool try_open(int f);
   bool move_keeps_shape(int v, const Vector3& p) const;
   bool move_keeps_surface(int v, const SurfacePoint& q) const;
   double walked_distance2(int v, const Vector3& p) const;
