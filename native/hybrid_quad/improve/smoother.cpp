@@ -74,8 +74,7 @@ void Smoother::update_reference(int q) {
   centre_face_[q] = nearest.face;
   const Vector3 below = nearest.face >= 0 ? input.normal(nearest.face) : Vector3(0, 0, 1);
   frames_[q].reference = unit_or(around + 2 * below, below);
-  // Without free corners there is more that it depends on.
-  if (place.has_face()) reference_place_[q] = place;
+  reference_place_[q] = place;
 }
 
 void Smoother::update_shape(int q) {

@@ -52,6 +52,7 @@ class Smoother {
     Vector3 centre = Vector3::Zero();
     std::array<int, 4> face{-1, -1, -1, -1};
     bool has_face() const { return face != std::array<int, 4>{-1, -1, -1, -1}; }
+    /// Not where no corner has a face: there is more then that a reference depends on.
     bool operator==(const ReferencePlace& other) const { return has_face() && face == other.face && centre == other.centre; }
   };
   template <class Work>
