@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "hybrid_quad/improve/mend.h"
 #include "hybrid_quad/improve/place_search.h"
@@ -12,8 +14,15 @@
 namespace hybrid_quad {
 namespace {
 
+TriangleMesh waves() {
+  const TriangleMesh flat = test::flat_grid(9, 9);
+  std::vector<Vector3> positions = flat.positions();
+  for (Vector3& p : positions) p.z() = 0.1 * std::sin(9 * p.x()) * std::sin(7 * p.y());
+  return TriangleMesh(std::move(positions), flat.faces());
+}
+
 struct Sheet {
-  Sheet() : input(test::flat_grid(9, 9)), features(detect_features(input, FeatureOptions{}, RunContext{})), index(input, features.face_region) {
+  explicit Sheet(const TriangleMesh& surface = test::flat_grid(9, 9)) : input(surface), features(detect_features(input, FeatureOptions{}, RunContext{})), index(input, features.face_region) {
     constexpr int kSide = 10;
     for (int j = 0; j <= kSide; ++j)
       for (int i = 0; i <= kSide; ++i) {
@@ -57,6 +66,30 @@ TEST(Mend, LeavesGoodMeshesAlone) {
   EXPECT_EQ(report.mended, 0);
   EXPECT_EQ(report.placed, 0);
   EXPECT_EQ(piece.mesh.extract().positions, sheet.quads.positions);
+}
+
+TEST(Smoother, FramesAreThoseOfTheVerticesAsTheyAre) {
+  Sheet sheet(waves());
+  Workpiece piece(sheet.quads, sheet.input, sheet.features, sheet.index);
+  piece.bind_all();
+  Smoother smoother(piece, SmootherOptions{});
+  smoother.smooth(5, RunContext{});
+  for (const int v : {Sheet::id(3, 3), Sheet::id(7, 5)}) {  // and all others rest
+    piece.mesh.positions[v] += Vector3(0.2, 0.1, 0);
+    piece.bind_free(v, Vector3::Zero());
+  }
+  smoother.update_frames(true);
+  // Without faces under its corners a quad has another reference, but not any more once they are back.
+  const std::vector<int> faces = piece.face;
+  for (const int v : piece.mesh.quad(44)) piece.face[v] = -1;
+  smoother.update_frames(true);
+  piece.face = faces;
+  smoother.update_frames(true);
+  const Smoother fresh(piece, SmootherOptions{});
+  for (int q = 0; q < piece.mesh.quad_count(); ++q) {
+    EXPECT_EQ(smoother.frame(q).reference, fresh.frame(q).reference);
+    EXPECT_EQ(smoother.frame(q).area, fresh.frame(q).area);
+  }
 }
 
 TEST(Workpiece, AVertexStaysOnTheSheetItIsNear) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/mesh/segment_index.h"
@@ -112,6 +113,25 @@ TEST(InvertedQuads, TheEdgeOfASheetInThePlaceOfAnotherIsNoExcuse) {
   constexpr double kEnough = 1e-3;
   EXPECT_TRUE(is_inverted(quad, narrow, {kEnough, true}));
   EXPECT_FALSE(is_inverted(quad, wide, {kEnough, true}));
+}
+
+TEST(FlawedQuads, WhoAsksForMoreFindsMore) {
+  // Crumpled, so that all kinds of agreement occur.
+  const SurfaceIndex index(test::torus(24, 12), {});
+  QuadMesh mesh = square_grid(12, 0);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> u(-0.2, 0.2);
+  for (Vector3& p : mesh.positions) p = Vector3(3 * p.x() - 1.5, 3 * p.y() - 1.5, p.z()) + Vector3(u(random), u(random), u(random));
+  const double area = index.mesh().total_area();
+  std::vector<int> more;
+  for (const Agreement& agreement : {Agreement{1e-2 * area}, Agreement{1e-3 * area}, Agreement{1e-3 * area, true}, Agreement{}}) {
+    const std::vector<int> found = flawed_quads(mesh, index, agreement);
+    EXPECT_FALSE(found.empty());
+    if (!more.empty()) {
+      EXPECT_EQ(flawed_among(more, mesh, index, agreement), found);
+    }
+    more = found;
+  }
 }
 
 TEST(SurfaceDistance, ParallelSheets) {

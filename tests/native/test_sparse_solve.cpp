@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "hybrid_quad/numerics/multifrontal_cholesky.h"
@@ -112,6 +113,18 @@ TEST(MultifrontalCholesky, TellsWhatIsNotPositiveDefinite) {
   EXPECT_FALSE(factor.factorize(problem.lower, 0, RunContext{}));
   problem.lower.coeffRef(210, 210) = 10;
   EXPECT_TRUE(factor.factorize(problem.lower, 0, RunContext{}));
+}
+
+TEST(SparseSolve, OneOrderOfEliminationDoesForOtherValues) {
+  for (const int sheets : {1, 60}) {  // by columns, and by fronts
+    const Problem problem = grid_problem(20, sheets, 1);
+    SparseMatrix other = problem.lower;
+    for (int i = 0; i < other.rows(); ++i) other.coeffRef(i, i) *= 3;
+    const Eigen::VectorXd b = some_vector(other.rows());
+    SparseFactor factor(problem.lower, problem.places, RunContext{});
+    for (const SparseMatrix* lower : {&problem.lower, &std::as_const(other)})
+      EXPECT_TRUE(solve_sparse(*lower, b, factor, RunContext{}) == solve_sparse(*lower, b, problem.places, RunContext{}));
+  }
 }
 
 TEST(SparseSolve, SolvesAndSurvivesSingularSystems) {

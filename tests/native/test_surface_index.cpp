@@ -40,6 +40,41 @@ TEST(SurfaceIndex, FindsWhatBruteForceFinds) {
   }
 }
 
+TEST(SurfaceIndex, SizeAndPlaceMakeNoDifference) {
+  const TriangleMesh torus = test::torus(24, 12);
+  for (const double size : {1e-30, 1e-3, 1e30})
+    for (const double away : {0.0, 1e4}) {
+      std::vector<Vector3> positions = torus.positions();
+      for (Vector3& p : positions) p = size * (p + Vector3(away, 0, -away));
+      const TriangleMesh mesh(std::move(positions), torus.faces());
+      const SurfaceIndex index(mesh, {});
+      std::mt19937 random(3);
+      std::uniform_real_distribution<double> u(-2, 2);
+      for (int i = 0; i < 100; ++i) {
+        const Vector3 p = size * (Vector3(u(random), u(random), u(random)) + Vector3(away, 0, -away));
+        const SurfacePoint q = index.nearest(p);
+        ASSERT_GE(q.face, 0);
+        EXPECT_NEAR(q.squared_distance / (size * size), brute_force(mesh, p, -1, {}) / (size * size), 1e-9);
+      }
+      EXPECT_GE(index.nearest(1e25 * size * Vector3(1, 1, 1)).face, 0) << "from however far away";
+    }
+}
+
+TEST(SurfaceIndex, SameForAnyNumberOfThreads) {
+  const TriangleMesh m = test::torus(40, 20);
+  const SurfaceIndex one(m, {}), three(m, {}, 3);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-2, 2);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 p(u(random), u(random), u(random)), reach = Vector3::Constant(0.3);
+    EXPECT_EQ(one.nearest(p).face, three.nearest(p).face);
+    std::vector<int> here, there;
+    one.any_in_box(p - reach, p + reach, [&](int f) { return here.push_back(f), false; });
+    three.any_in_box(p - reach, p + reach, [&](int f) { return there.push_back(f), false; });
+    EXPECT_EQ(here, there);
+  }
+}
+
 TEST(SurfaceIndex, NormalFilterKeepsToOneSideOfAThinSheet) {
   const TriangleMesh m = test::box(4, Vector3(1, 1, 0.01));
   const SurfaceIndex index(m, {});

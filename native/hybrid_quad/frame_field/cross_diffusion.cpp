@@ -12,8 +12,8 @@ constexpr double kTiny = 1e-300;
 void apply(const CrossSystem& system, const std::vector<double>& mass, const std::vector<Complex>& x, std::vector<Complex>& y) {
   for (int i = 0; i < system.size(); ++i) y[i] = (system.diagonal[i] + mass[i]) * x[i];
   for (const CrossLink& link : system.links) {
-    y[link.to] -= link.weight * x[link.from];
-    y[link.from] -= std::conj(link.weight) * x[link.to];
+    y[link.to] -= times(link.weight, x[link.from]);
+    y[link.from] -= times(std::conj(link.weight), x[link.to]);
   }
 }
 
@@ -29,7 +29,7 @@ void diffuse_cross_system(const CrossSystem& system, const std::vector<double>& 
     double dot = 0;
     for (int i = 0; i < n; ++i) {
       scaled[i] = residual[i] / (system.diagonal[i] + mass[i] + kTiny);
-      dot += (std::conj(residual[i]) * scaled[i]).real();
+      dot += real_product(residual[i], scaled[i]);
     }
     return dot;
   };
@@ -42,7 +42,7 @@ void diffuse_cross_system(const CrossSystem& system, const std::vector<double>& 
     if (step % 8 == 0) context.checkpoint(0.8);
     apply(system, mass, direction, image);
     double curvature = 0;
-    for (int i = 0; i < n; ++i) curvature += (std::conj(direction[i]) * image[i]).real();
+    for (int i = 0; i < n; ++i) curvature += real_product(direction[i], image[i]);
     if (!(curvature > 0)) break;
     const double length = rho / curvature;
     for (int i = 0; i < n; ++i) {

@@ -56,7 +56,7 @@ void sweep(const CrossLevel& level, int sweeps, std::vector<Complex>& values, co
       const int i = s % 2 ? n - 1 - k : k;
       Complex pull = level.system.source[i];
       for (int e = level.row_begin[i]; e < level.row_begin[i + 1]; ++e)
-        pull += level.weight[e] * values[level.neighbour[e]];
+        pull += times(level.weight[e], values[level.neighbour[e]]);
       const double length = std::abs(pull);
       if (length > kTiny) values[i] = pull / length;
     }

@@ -8,6 +8,13 @@ namespace hybrid_quad {
 
 using Complex = std::complex<double>;
 
+/// x y of finite numbers. The operator looks after infinities, which takes longer than the product.
+inline Complex times(const Complex& x, const Complex& y) {
+  return {x.real() * y.real() - x.imag() * y.imag(), x.real() * y.imag() + x.imag() * y.real()};
+}
+/// Real part of conj(x) y.
+inline double real_product(const Complex& x, const Complex& y) { return x.real() * y.real() + x.imag() * y.imag(); }
+
 /// Wants z[to] = (weight / |weight|) z[from], with stiffness |weight|.
 struct CrossLink {
   int from, to;  ///< from < to

@@ -51,7 +51,7 @@ void sweep(const CrossLevel& level, int sweeps, std::vector<Complex>& values, co
       const int i = s % 2 ? n - 1 - k : k;
       if (!(level.system.diagonal[i] > 0)) continue;
       Complex pull = level.system.source[i];
-      for (int e = level.row_begin[i]; e < level.row_begin[i + 1]; ++e) pull += level.weight[e] * values[level.neighbour[e]];
+      for (int e = level.row_begin[i]; e < level.row_begin[i + 1]; ++e) pull += times(level.weight[e], values[level.neighbour[e]]);
       values[i] = pull / level.system.diagonal[i];
     }
   }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/improve/workpiece.h"
 #include "hybrid_quad/quality/quality.h"
 
@@ -27,6 +28,15 @@ class FlawMeasure {
     if (known[0].corners == p) return known[0].is_flawed;
     known[0] = {p, hybrid_quad::is_flawed(p, kLeastArea * piece_.h * piece_.h, whole_, agreement_)};
     return known[0].is_flawed;
+  }
+
+  /// Learns of all quads, on all threads, which of them are flawed.
+  void look_at_all(const RunContext& context) const {
+    known_.resize(piece_.mesh.quad_count());
+    parallel_chunks(piece_.mesh.quad_count(), context, [&](int begin, int end) {
+      for (int q = begin; q < end; ++q)
+        if (piece_.mesh.alive(q)) is_flawed(q);
+    });
   }
 
   /// What a quad's scaled Jacobian lacks to a fair one.

@@ -77,7 +77,6 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   if (!(piece.h > 0)) return report;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
-  report.inverted_before = static_cast<int>(tangled_quads(piece, context.threads).size());
   bind(piece);
   Smoother smoother(piece, smoothing_of(options, context.threads));
   if (options.edit_connectivity)

@@ -19,6 +19,7 @@ class Mender {
   Mender(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement)
       : piece_(piece), smoother_(smoother), measure_(piece, whole, agreement), search_(piece.mesh, kEffort) {}
 
+  void look_at_all(const RunContext& context) const { measure_.look_at_all(context); }
   bool is_flawed(int q) const { return measure_.is_flawed(q); }
 
   /// \returns whether fewer quads around q are flawed now
@@ -134,6 +135,7 @@ int mend_in_rounds(Workpiece& piece, Mender& mender, const RunContext& context, 
 MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex& whole, const Agreement& agreement,
                        const RunContext& context) {
   Mender mender(piece, smoother, whole, agreement);
+  mender.look_at_all(context);
   FutileMending futile(piece.h);
   MendReport report;
   report.mended = mend_in_rounds(piece, mender, context, nullptr, futile);

@@ -50,14 +50,19 @@ void Smoother::update_reference(int q) {
   const auto& p = piece_.mesh.positions;
   const TriangleMesh& input = piece_.input;
   const Vector3 centre = 0.25 * (p[v[0]] + p[v[1]] + p[v[2]] + p[v[3]]);
+  ReferencePlace place{centre, {-1, -1, -1, -1}};
+  for (int i = 0; i < 4; ++i)
+    if (piece_.mesh.is_free(v[i])) place.face[i] = piece_.face[v[i]];
+  if (place == reference_place_[q]) return;
   // Walks from the corners stay on their sheet, however near another one is.
   Vector3 around = Vector3::Zero();
   SurfacePoint nearest;
-  for (const int corner : v) {
-    if (!piece_.mesh.is_free(corner) || piece_.face[corner] < 0) continue;
-    const SurfacePoint walked = piece_.walk(centre, piece_.face[corner]);
+  for (int i = 0; i < 4; ++i) {
+    if (place.face[i] < 0) continue;
+    around += input.normal(place.face[i]);
+    if (std::find(place.face.begin(), place.face.begin() + i, place.face[i]) != place.face.begin() + i) continue;
+    const SurfacePoint walked = piece_.walk(centre, place.face[i]);
     if (nearest.face < 0 || walked.squared_distance < nearest.squared_distance) nearest = walked;
-    around += input.normal(piece_.face[corner]);
   }
   if (nearest.face < 0) {
     SurfaceIndex::Filter filter;
@@ -69,6 +74,7 @@ void Smoother::update_reference(int q) {
   centre_face_[q] = nearest.face;
   const Vector3 below = nearest.face >= 0 ? input.normal(nearest.face) : Vector3(0, 0, 1);
   frames_[q].reference = unit_or(around + 2 * below, below);
+  reference_place_[q] = place;
 }
 
 void Smoother::update_shape(int q) {
@@ -114,6 +120,7 @@ void Smoother::update_frames(const std::vector<int>& quads, bool with_references
   frames_.resize(piece_.mesh.quad_count());
   own_area_.resize(piece_.mesh.quad_count(), piece_.h * piece_.h);
   centre_face_.resize(piece_.mesh.quad_count(), -1);
+  reference_place_.resize(piece_.mesh.quad_count());
   for_each(quads, with_references ? kMoves : kSums, [&](int q) {
     if (!piece_.mesh.alive(q)) return;
     if (with_references) update_reference(q);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "hybrid_quad/base/run_context.h"
@@ -46,6 +47,14 @@ class Smoother {
 
  private:
   struct Derivatives;
+  /// What a quad's reference depends on: where its middle is, and the input faces under its free corners.
+  struct ReferencePlace {
+    Vector3 centre = Vector3::Zero();
+    std::array<int, 4> face{-1, -1, -1, -1};
+    bool has_face() const { return face != std::array<int, 4>{-1, -1, -1, -1}; }
+    /// Not where no corner has a face: there is more then that a reference depends on.
+    bool operator==(const ReferencePlace& other) const { return has_face() && face == other.face && centre == other.centre; }
+  };
   template <class Work>
   void for_each(const std::vector<int>& list, int chunk, const Work& work) const;
   void update_reference(int q);
@@ -67,6 +76,7 @@ class Smoother {
   AskedAreas asked_areas_;
   std::vector<double> own_area_;
   std::vector<int> centre_face_;
+  std::vector<ReferencePlace> reference_place_;  ///< of the references as they are
   VertexGuides guides_;
 };
 

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "hybrid_quad/mesh/bucket_sort.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -96,7 +98,7 @@ void Gluer::collect_sides() {
       const int a = faces[f][i], b = faces[f][(i + 1) % 3];
       sides_.push_back({std::min(a, b), std::max(a, b), 3 * f + i, a < b});
     }
-  std::sort(sides_.begin(), sides_.end(), [](const EdgeSide& x, const EdgeSide& y) {
+  bucket_sort(sides_, [](const EdgeSide& x) { return x.low; }, [](const EdgeSide& x, const EdgeSide& y) {
     return std::tie(x.low, x.high, x.halfedge) < std::tie(y.low, y.high, y.halfedge);
   });
 }

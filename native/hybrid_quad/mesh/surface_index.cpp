@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/mesh/surface_walk.h"
 
 namespace hybrid_quad {
@@ -43,8 +45,11 @@ Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b
 
 namespace {
 
-constexpr int kLeafFaces = 4;
-constexpr int kStackSize = 128;  // the tree is halved at every level, so its depth stays below 40
+using Four = Eigen::Array4f;
+
+constexpr int kWidth = 4;
+constexpr int kNone = std::numeric_limits<int>::max();
+constexpr int kStackSize = 128;  // three entries a level, and ranges are quartered, so that there are fewer than 40 levels
 
 struct Box {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
@@ -56,19 +61,56 @@ struct Box {
   bool meets(const Vector3& l, const Vector3& h) const {
     return (low.array() <= h.array()).all() && (l.array() <= high.array()).all();
   }
-  double squared_distance(const Vector3& p) const {
-    const auto beyond = [&](int i) { return std::max(std::max(low[i] - p[i], p[i] - high[i]), 0.0); };
-    const double x = beyond(0), y = beyond(1), z = beyond(2);
-    return x * x + (y * y + z * z);
-  }
 };
 
-/// A cache line.
+constexpr float kUlp = std::numeric_limits<float>::epsilon(), kLeast = std::numeric_limits<float>::min();
+
+float rounded_down(double x) {
+  const float f = static_cast<float>(x);
+  return f - (kUlp * std::abs(f) + kLeast);
+}
+float rounded_up(double x) {
+  const float f = static_cast<float>(x);
+  return f + (kUlp * std::abs(f) + kLeast);
+}
+
+/// A box in the tree's units and in single precision, rounded outwards.
+struct FloatBox {
+  std::array<float, 3> low, high;
+};
+
+/// Up to four children with their boxes, side by side so that all are tested at once.
 struct alignas(64) Node {
-  Box box;
-  int first = 0, count = 0;  ///< a leaf's range of `order`; count = 0: an inner node
-  int left = -1;             ///< the other child is next to it
-  int region = -1;           ///< the only region below, or -1 if there are several
+  Four low[3], high[3];
+  std::array<int, kWidth> child{kNone, kNone, kNone, kNone};  ///< a node; ~i: the face order[i]; kNone
+  std::array<int, kWidth> region{-1, -1, -1, -1};             ///< the only region below, or -1 if there are several
+
+  Node() {
+    for (int i = 0; i < 3; ++i) {
+      low[i].setConstant(std::numeric_limits<float>::infinity());
+      high[i].setConstant(-std::numeric_limits<float>::infinity());
+    }
+  }
+  void put(int lane, const FloatBox& box) {
+    for (int i = 0; i < 3; ++i) {
+      low[i][lane] = box.low[i];
+      high[i][lane] = box.high[i];
+    }
+  }
+  /// Never more than the children's squared distances, but for rounding.
+  Four squared_distances(const FloatBox& p) const {
+    const auto beyond = [&](int i) -> Four { return (low[i] - p.high[i]).max(p.low[i] - high[i]).max(0.0F); };
+    const Four x = beyond(0), y = beyond(1), z = beyond(2);
+    return x * x + (y * y + z * z);
+  }
+  std::array<bool, kWidth> meet(const FloatBox& b) const {
+    std::array<bool, kWidth> out;
+    for (int k = 0; k < kWidth; ++k) {
+      out[k] = child[k] != kNone;
+      for (int i = 0; i < 3; ++i) out[k] = out[k] && low[i][k] <= b.high[i] && b.low[i] <= high[i][k];
+    }
+    return out;
+  }
 };
 
 }  // namespace
@@ -80,15 +122,33 @@ struct SurfaceIndex::Tree {
   std::vector<int> order;
   std::vector<std::array<Vector3, 3>> corners;  ///< of the faces in `order`
   std::vector<Node> nodes;
+  Vector3 origin = Vector3::Zero();
+  double scale = 1;  ///< of the tree's units, in which the surface has a size of 1: single precision overflows else
 
-  bool passes(int f, const Filter& filter) const {
-    if (filter.region >= 0 && !region.empty() && region[f] != filter.region) return false;
+  bool passes(int f, const Filter& filter) const { return passes_region(f, filter) && passes_normal(f, filter); }
+  bool passes_region(int f, const Filter& filter) const {
+    return filter.region < 0 || region.empty() || region[f] == filter.region;
+  }
+  bool passes_normal(int f, const Filter& filter) const {
     return filter.min_cosine <= -1 || normal[f].dot(filter.normal) >= filter.min_cosine;
   }
   Box box_of(int f) const {
     Box box;
     for (const int v : mesh.face(f)) box.add({mesh.position(v), mesh.position(v)});
     return box;
+  }
+  FloatBox in_units(const Vector3& low, const Vector3& high) const {
+    FloatBox box;
+    for (int i = 0; i < 3; ++i) {
+      box.low[i] = rounded_down((low[i] - origin[i]) * scale);
+      box.high[i] = rounded_up((high[i] - origin[i]) * scale);
+    }
+    return box;
+  }
+  /// A bound for Node::squared_distances() of all that may be as near to p as that.
+  float limit_of(double squared_distance, const Vector3& p) const {
+    constexpr float kMoreThanRounding = 1 + 1e-6F;
+    return static_cast<float>(with_rounding(squared_distance, p) * scale * scale) * kMoreThanRounding + kLeast;
   }
   /// Takes face f with the given corners if it is nearer than what `best` holds, or as near and comes first.
   static void take(const Vector3& p, int f, const std::array<Vector3, 3>& corner, SurfacePoint& best) {
@@ -102,84 +162,162 @@ struct SurfaceIndex::Tree {
     const auto& t = mesh.face(f);
     return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
-  void build();
-  void bound_nodes();
+  void build(int threads);
+  void bound(std::vector<Node>& tree) const;
+  static void put_below(Node& node, int lane, const Node& below);
 };
 
-void SurfaceIndex::Tree::build() {
+namespace {
+
+/// Faces of a tree that is being built.
+struct Item {
+  Vector3 middle;
+  int face;
+};
+
+struct Range {
+  int begin = 0, end = 0;
+  int size() const { return end - begin; }
+};
+
+/// Halves a range across its longest side. \returns the second half
+Range halve(std::vector<Item>& items, Range& range) {
+  Box middles;
+  for (int i = range.begin; i < range.end; ++i) middles.add({items[i].middle, items[i].middle});
+  int axis = 0;
+  (middles.high - middles.low).maxCoeff(&axis);
+  const int half = (range.begin + range.end) / 2;
+  std::nth_element(items.begin() + range.begin, items.begin() + half, items.begin() + range.end,
+                   [axis](const Item& x, const Item& y) {
+                     return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.face < y.face;
+                   });
+  const Range second{half, range.end};
+  range.end = half;
+  return second;
+}
+
+struct Parts {
+  std::array<Range, kWidth> range;
+  int count = 0;
+};
+
+/// Up to four parts of about the same size.
+Parts quartered(std::vector<Item>& items, const Range& range) {
+  Parts parts{{range}, 1};
+  while (parts.count < kWidth) {
+    const auto largest = std::max_element(parts.range.begin(), parts.range.begin() + parts.count,
+                                          [](const Range& x, const Range& y) { return x.size() < y.size(); });
+    if (largest->size() < 2) break;
+    parts.range[parts.count++] = halve(items, *largest);
+  }
+  return parts;
+}
+
+/// The tree of a range, without boxes.
+std::vector<Node> tree_of(std::vector<Item>& items, const Range& all) {
+  struct Task {
+    int node;
+    Range range;
+  };
+  std::vector<Node> nodes(1);
+  std::vector<Task> tasks{{0, all}};
+  while (!tasks.empty()) {
+    const Task task = tasks.back();
+    tasks.pop_back();
+    const Parts parts = quartered(items, task.range);
+    for (int k = 0; k < parts.count; ++k) {
+      const Range& range = parts.range[k];
+      if (range.size() == 1) {
+        nodes[task.node].child[k] = ~range.begin;
+        continue;
+      }
+      const int child = static_cast<int>(nodes.size());
+      nodes[task.node].child[k] = child;
+      tasks.push_back({child, range});
+      nodes.emplace_back();
+    }
+  }
+  return nodes;
+}
+
+}  // namespace
+
+void SurfaceIndex::Tree::build(int threads) {
   const int face_count = mesh.face_count();
   if (face_count == 0) return;
-  struct Item {
-    Vector3 middle;
-    int face;
-  };
   std::vector<Item> items(face_count);
   normal.resize(face_count);
+  Box all;
   for (int f = 0; f < face_count; ++f) {
     const Box box = box_of(f);
     items[f] = {0.5 * (box.low + box.high), f};
     normal[f] = mesh.normal(f);
+    all.add(box);
   }
-  struct Task {
-    int node, begin, end;
-  };
-  std::vector<Task> tasks{{0, 0, face_count}};
+  origin = 0.5 * (all.low + all.high);
+  const double size = (all.high - all.low).maxCoeff();
+  scale = size > 0 && std::isfinite(1 / size) ? 1 / size : 1;
+  order.resize(face_count);
+  corners.resize(face_count);
+  // The root's children are trees of their own, which come one after the other behind it.
+  const Parts parts = quartered(items, {0, face_count});
+  std::array<std::vector<Node>, kWidth> below;
+  parallel_for(parts.count, threads, [&](int k) {
+    const Range range = parts.range[k];
+    below[k] = tree_of(items, range);
+    for (int i = range.begin; i < range.end; ++i) {
+      order[i] = items[i].face;
+      corners[i] = corners_of(items[i].face);
+    }
+    bound(below[k]);
+  });
   nodes.resize(1);
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    if (task.end - task.begin <= kLeafFaces) {
-      nodes[task.node].first = task.begin;
-      nodes[task.node].count = task.end - task.begin;
-      continue;
-    }
-    Box middles;
-    for (int i = task.begin; i < task.end; ++i) middles.add({items[i].middle, items[i].middle});
-    int axis = 0;
-    (middles.high - middles.low).maxCoeff(&axis);
-    const int half = (task.begin + task.end) / 2;
-    std::nth_element(items.begin() + task.begin, items.begin() + half, items.begin() + task.end,
-                     [axis](const Item& x, const Item& y) {
-                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.face < y.face;
-                     });
-    const int left = static_cast<int>(nodes.size());
-    nodes.resize(nodes.size() + 2);
-    nodes[task.node].left = left;
-    tasks.push_back({left, task.begin, half});
-    tasks.push_back({left + 1, half, task.end});
-  }
-  order.reserve(face_count);
-  corners.reserve(face_count);
-  for (const Item& item : items) {
-    order.push_back(item.face);
-    corners.push_back(corners_of(item.face));
-  }
-  bound_nodes();
-}
-
-/// Boxes and regions, children before their parents.
-void SurfaceIndex::Tree::bound_nodes() {
-  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
-    if (node->count == 0) {
-      const Node &left = nodes[node->left], &right = nodes[node->left + 1];
-      node->box = left.box;
-      node->box.add(right.box);
-      node->region = left.region == right.region ? left.region : -1;
-      continue;
-    }
-    node->region = region.empty() ? -1 : region[order[node->first]];
-    for (int i = node->first; i < node->first + node->count; ++i) {
-      node->box.add(box_of(order[i]));
-      if (!region.empty() && region[order[i]] != node->region) node->region = -1;
-    }
+  for (int k = 0; k < parts.count; ++k) {
+    const int offset = static_cast<int>(nodes.size());
+    nodes[0].child[k] = offset;
+    for (Node& node : below[k])
+      for (int& child : node.child)
+        if (child >= 0 && child != kNone) child += offset;
+    nodes.insert(nodes.end(), below[k].begin(), below[k].end());
+    put_below(nodes[0], k, nodes[offset]);
   }
 }
 
-SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : tree_(std::make_unique<Tree>()) {
+/// Gives a child the box of all that is below it, and the region.
+void SurfaceIndex::Tree::put_below(Node& node, int lane, const Node& below) {
+  FloatBox box;
+  for (int i = 0; i < 3; ++i) {
+    box.low[i] = below.low[i].minCoeff();
+    box.high[i] = below.high[i].maxCoeff();
+  }
+  node.put(lane, box);
+  node.region[lane] = below.region[0];
+  for (int j = 1; j < kWidth && below.child[j] != kNone; ++j)
+    if (below.region[j] != node.region[lane]) node.region[lane] = -1;
+}
+
+/// Boxes and regions of a tree, children before their parents.
+void SurfaceIndex::Tree::bound(std::vector<Node>& tree) const {
+  for (auto node = tree.rbegin(); node != tree.rend(); ++node)
+    for (int k = 0; k < kWidth && node->child[k] != kNone; ++k) {
+      if (node->child[k] >= 0) {
+        put_below(*node, k, tree[node->child[k]]);
+        continue;
+      }
+      const int f = order[~node->child[k]];
+      const Box box = box_of(f);
+      node->put(k, in_units(box.low, box.high));
+      node->region[k] = region.empty() ? -1 : region[f];
+    }
+}
+
+SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads) : tree_(std::make_unique<Tree>()) {
   tree_->mesh = mesh;
   tree_->region = std::move(face_region);
-  tree_->build();
+  tree_->build(threads);
 }
+
+SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : SurfaceIndex(mesh, std::move(face_region), 1) {}
 
 SurfaceIndex::~SurfaceIndex() = default;
 SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
@@ -199,28 +337,35 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
   }
 
   struct Entry {
-    int node;
-    double squared_distance;
+    int child;
+    float squared_distance;
   };
+  const FloatBox place = tree.in_units(p, p);
+  float limit = tree.limit_of(best.squared_distance, p);
   Entry stack[kStackSize];
   int size = 0;
-  stack[size++] = {0, tree.nodes[0].box.squared_distance(p)};
+  stack[size++] = {0, 0};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (!(entry.squared_distance < with_rounding(best.squared_distance, p))) continue;
-    const Node& node = tree.nodes[entry.node];
-    if (filter.region >= 0 && node.region >= 0 && node.region != filter.region) continue;
-    if (node.count > 0) {
-      for (int i = node.first; i < node.first + node.count; ++i)
-        if (tree.passes(tree.order[i], filter)) Tree::take(p, tree.order[i], tree.corners[i], best);
+    if (!(entry.squared_distance <= limit)) continue;
+    if (entry.child < 0) {
+      const int f = tree.order[~entry.child];
+      if (!tree.passes_normal(f, filter)) continue;
+      Tree::take(p, f, tree.corners[~entry.child], best);
+      limit = tree.limit_of(best.squared_distance, p);
       continue;
     }
-    Entry near{node.left, tree.nodes[node.left].box.squared_distance(p)};
-    Entry far{node.left + 1, tree.nodes[node.left + 1].box.squared_distance(p)};
-    if (far.squared_distance < near.squared_distance) std::swap(near, far);
-    const double limit = with_rounding(best.squared_distance, p);
-    if (far.squared_distance < limit) stack[size++] = far;
-    if (near.squared_distance < limit) stack[size++] = near;
+    const Node& node = tree.nodes[entry.child];
+    const Four distances = node.squared_distances(place);
+    const int begin = size;
+    for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
+      const float distance = distances[k];
+      if (!(distance <= limit)) continue;
+      if (filter.region >= 0 && node.region[k] >= 0 && node.region[k] != filter.region) continue;
+      int at = size++;  // the nearest comes to the top
+      for (; at > begin && stack[at - 1].squared_distance < distance; --at) stack[at] = stack[at - 1];
+      stack[at] = {node.child[k], distance};
+    }
   }
   if (best.face < 0) best.squared_distance = 0;
   return best;
@@ -229,19 +374,21 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
 bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std::function<bool(int)>& visit) const {
   const Tree& tree = *tree_;
   if (tree.nodes.empty()) return false;
+  const FloatBox box = tree.in_units(low, high);
   int stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
-    const Node& node = tree.nodes[stack[--size]];
-    if (!node.box.meets(low, high)) continue;
-    if (node.count == 0) {
-      stack[size++] = node.left + 1;
-      stack[size++] = node.left;
+    const int child = stack[--size];
+    if (child < 0) {
+      const int f = tree.order[~child];
+      if (tree.box_of(f).meets(low, high) && visit(f)) return true;
       continue;
     }
-    for (int i = node.first; i < node.first + node.count; ++i)
-      if (tree.box_of(tree.order[i]).meets(low, high) && visit(tree.order[i])) return true;
+    const Node& node = tree.nodes[child];
+    const std::array<bool, kWidth> meets = node.meet(box);
+    for (int k = kWidth; k-- > 0;)
+      if (meets[k]) stack[size++] = node.child[k];
   }
   return false;
 }

@@ -25,7 +25,8 @@ inline double with_rounding(double squared_distance, const Vector3& p) {
 /// Nearest points of a triangle mesh: a bounding-volume tree with an optional filter by region and by normal.
 class SurfaceIndex {
  public:
-  /// \param face_region  #F, may be empty (no filter by region)
+  /// \param face_region  #F, may be empty (no filter by region)  \param threads  the index does not depend on it
+  SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads);
   SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region);
   ~SurfaceIndex();
   SurfaceIndex(SurfaceIndex&&) noexcept;

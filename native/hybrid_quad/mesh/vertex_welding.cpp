@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "hybrid_quad/mesh/bucket_sort.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -52,7 +54,7 @@ std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>
   sides.reserve(3 * faces.size());
   for (const auto& f : faces)
     for (int i = 0; i < 3; ++i) sides.push_back({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3]), f[i]});
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  bucket_sort(sides, [](const Side& x) { return x.low; }, [](const Side& x, const Side& y) {
     return std::tie(x.low, x.high, x.from) < std::tie(y.low, y.high, y.from);
   });
   std::vector<std::array<int, 2>> open;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_quad/numerics/sparse_factor.h"
-
 namespace hybrid_quad {
 
 namespace {
@@ -25,16 +23,27 @@ bool factorize(const SparseMatrix& lower, SparseFactor& factor, const RunContext
   return false;
 }
 
+bool is_worth_solving(const Eigen::VectorXd& right_side) {
+  const double size = right_side.norm();
+  return size > 0 && std::isfinite(size);
+}
+
 }  // namespace
 
 Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side,
                              const std::vector<Vector3>& places, const RunContext& context) {
+  if (!is_worth_solving(right_side)) return Eigen::VectorXd::Zero(right_side.size());
+  SparseFactor factor(lower, places, context);
+  return solve_sparse(lower, right_side, factor, context);
+}
+
+Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side, SparseFactor& factor,
+                             const RunContext& context) {
   constexpr int kRefinements = 3;
   constexpr double kTolerance = 1e-10;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
+  if (!is_worth_solving(right_side)) return x;
   const double size = right_side.norm();
-  if (!(size > 0) || !std::isfinite(size)) return x;
-  SparseFactor factor(lower, places, context);
   if (!factorize(lower, factor, context)) return x;
   Eigen::VectorXd residual = right_side;
   double left = size;

@@ -5,6 +5,7 @@
 
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/base/types.h"
+#include "hybrid_quad/numerics/sparse_factor.h"
 #include "hybrid_quad/numerics/sparse_matrix.h"
 
 namespace hybrid_quad {
@@ -19,5 +20,9 @@ namespace hybrid_quad {
 /// come out as 0; a right side that is not finite gives 0.
 Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side,
                              const std::vector<Vector3>& places, const RunContext& context);
+
+/// The same where several matrices have the same pattern, for which `factor` was made: an order of elimination is found once.
+Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& right_side, SparseFactor& factor,
+                             const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -33,10 +33,11 @@ void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std
   double mean = 0;
   for (int i = 0; i < graph.node_count(); ++i) mean += 0.5 * (graph.weight_a[i] + graph.weight_b[i]);
   mean = std::max(mean / std::max(1, graph.node_count()), 1e-300);
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+  factor.analyzePattern(matrix.lower);
   for (const double share : {0.0005, 0.0025, 0.01}) {
-    Eigen::SparseMatrix<double> lower = matrix.lower;
-    for (Eigen::Index i = 0; i < lower.rows(); ++i) lower.coeffRef(i, i) += share * mean;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(lower);
+    factor.setShift(share * mean);
+    factor.factorize(matrix.lower);
     if (factor.info() != Eigen::Success) return;
     for (int step = 0; step < 8; ++step) {
       z = phases_of(graph, matrix, factor.solve(unknowns_of(graph, matrix, z)));

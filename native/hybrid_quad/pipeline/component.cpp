@@ -86,8 +86,9 @@ int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceInd
   const Finishing finishing(plan, whole, wishes, options);
   const RunContext improving = context.in_stage("improve", 0.97, 0.97);
   const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
-  result.flawed_quads = static_cast<int>(finishing.flawed(result.mesh, context.threads).size());
-  result.doubtful_quads = static_cast<int>(finishing.doubtful(result.mesh, context.threads).size());
+  const Doubts doubts = finishing.doubts(result.mesh, context.threads);
+  result.flawed_quads = static_cast<int>(doubts.flawed.size());
+  result.doubtful_quads = static_cast<int>(doubts.doubtful.size());
   return count;
 }
 

@@ -63,12 +63,12 @@ class ComponentRemesher {
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
     require_valid("improve", result_.mesh);
-    for (const int q : finishing().flawed(result_.mesh, context_.threads)) result_.flawed_places.push_back(middle_of(result_.mesh, q));
+    const Doubts doubts = finishing().doubts(result_.mesh, context_.threads);
+    for (const int q : doubts.flawed) result_.flawed_places.push_back(middle_of(result_.mesh, q));
     result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
     result_.features_given_way = plan_.given_way;
-    const std::vector<int> doubtful = finishing().doubtful(result_.mesh, context_.threads);
-    result_.doubtful_quads = static_cast<int>(doubtful.size());
-    for (const int q : doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
+    result_.doubtful_quads = static_cast<int>(doubts.doubtful.size());
+    for (const int q : doubts.doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);
   }
 

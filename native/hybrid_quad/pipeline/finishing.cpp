@@ -109,8 +109,12 @@ void Finishing::settle_features(QuadMesh& mesh) const {
   if (asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
 }
 
-std::vector<int> Finishing::doubtful(const QuadMesh& mesh, int threads) const {
-  return flawed_quads(mesh, whole_, improve_.agreement, threads);
+/// What agrees with enough for no doubt agrees with enough.
+Doubts Finishing::doubts(const QuadMesh& mesh, int threads) const {
+  Doubts found;
+  found.doubtful = flawed_quads(mesh, whole_, improve_.agreement, threads);
+  found.flawed = flawed_among(found.doubtful, mesh, whole_, least_agreement(whole_));
+  return found;
 }
 
 }  // namespace hybrid_quad

@@ -10,6 +10,12 @@ namespace hybrid_quad {
 /// What of a surface has to agree with each quad of a result.
 Agreement least_agreement(const SurfaceIndex& whole);
 
+/// Quads that are flawed, and with these some that only just pass that test (flawed_quads): where little of the surface
+/// agrees with them, or only a sheet in the same place. Ascending.
+struct Doubts {
+  std::vector<int> flawed, doubtful;
+};
+
 /// How the extracted quads of a component are improved and made fit for mirroring.
 class Finishing {
  public:
@@ -27,10 +33,8 @@ class Finishing {
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 
-  /// Quads that are flawed, and with these some that only just pass that test (flawed_quads): where little of the surface
-  /// agrees with them, or only a sheet in the same place.
   std::vector<int> flawed(const QuadMesh& mesh, int threads) const;
-  std::vector<int> doubtful(const QuadMesh& mesh, int threads) const;
+  Doubts doubts(const QuadMesh& mesh, int threads) const;
 
  private:
   void settle_features(QuadMesh& mesh) const;

@@ -83,9 +83,10 @@ double given_length(const std::vector<Component>& components, const std::vector<
   return quads > 0 ? std::sqrt(area / quads) : options.edge_length;
 }
 
-std::shared_ptr<const SurfaceIndex> recalled_index(StageCache* cache, const std::string& what, int part, const TriangleMesh& mesh) {
+std::shared_ptr<const SurfaceIndex> recalled_index(StageCache* cache, const std::string& what, int part, const TriangleMesh& mesh,
+                                                   int threads) {
   return recalled(cache, {StageCache::Level::kPlan, "index of " + what, part},
-                  [&] { return std::make_shared<const SurfaceIndex>(mesh, std::vector<int>{}); });
+                  [&] { return std::make_shared<const SurfaceIndex>(mesh, std::vector<int>{}, threads); });
 }
 
 /// How long the edges of each component are to be.
@@ -189,7 +190,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
       const Component& c = components[i];
       add_directions(c.mesh, c.vertex, c.face, domain.values, domain.options, found.wishes[i]);
       if (!found.wishes[i].guides.empty() && !found.wishes[i].index)
-        found.wishes[i].index = recalled_index(context.cache, "component", static_cast<int>(i), c.mesh);
+        found.wishes[i].index = recalled_index(context.cache, "component", static_cast<int>(i), c.mesh, context.threads);
     }
     return found;
   });
@@ -199,7 +200,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
 }
 
 std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
-  return recalled_index(run.context.cache, "whole", 0, surface_of(run));
+  return recalled_index(run.context.cache, "whole", 0, surface_of(run), run.context.threads);
 }
 
 }  // namespace hybrid_quad

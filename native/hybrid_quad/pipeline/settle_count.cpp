@@ -22,6 +22,9 @@ constexpr int kRowRounds = 2, kRounds = 6;
 constexpr int kMostImprovements = 6;
 constexpr std::size_t kFewFlawed = 4;  ///< sides are split for no more: where improving leaves many, the number is out of reach
 
+double error_of(double quads, double wanted) { return std::abs(std::log(quads / wanted)); }
+bool is_far_off(double quads, double wanted) { return error_of(quads, wanted) > kNear && std::abs(quads - wanted) > 1; }
+
 class CountSettling {
  public:
   CountSettling(const ComponentPlan& plan, double wanted, const Finishing& finishing, const SurfaceIndex& whole,
@@ -32,7 +35,6 @@ class CountSettling {
   }
 
   void run() {
-    if (!is_far()) return;
     int rows = 0;
     for (int i = 0, last = -1; i < kRowRounds && is_far() && rows != last && may_improve(); ++i) {
       last = rows;
@@ -51,13 +53,12 @@ class CountSettling {
  private:
   SettledState measured(const QuadMesh& mesh) const {
     const int quads = static_cast<int>(mesh.quads.size());
-    return {quads, static_cast<int>(finishing_.flawed(mesh, context_.threads).size()),
-            static_cast<int>(finishing_.doubtful(mesh, context_.threads).size()), missed_counts(plan_.features, mesh),
-            error_of(quads)};
+    const Doubts doubts = finishing_.doubts(mesh, context_.threads);
+    return {quads, static_cast<int>(doubts.flawed.size()), static_cast<int>(doubts.doubtful.size()),
+            missed_counts(plan_.features, mesh), error_of(quads, wanted_)};
   }
-  double error_of(int quads) const { return std::abs(std::log(quads / wanted_)); }
 
-  bool is_far() const { return now_.error > kNear && std::abs(now_.quads - wanted_) > 1; }
+  bool is_far() const { return is_far_off(now_.quads, wanted_); }
   double tolerance() const { return std::max(1.0, kAim * wanted_); }
 
   /// \returns whether `mesh` is sound and no worse; then it is the result
@@ -76,7 +77,7 @@ class CountSettling {
   int change_rows() {
     QuadComplex complex = complex_of(result_.mesh);
     const int rows = fit_quad_count(complex, wanted_, tolerance(), counted_);
-    if (rows == 0 || !is_worth_improving(error_of(complex.quad_count()), now_.error)) return 0;
+    if (rows == 0 || !is_worth_improving(error_of(complex.quad_count(), wanted_), now_.error)) return 0;
     QuadMesh mesh = to_quad_mesh(complex);
     order_feature_edges(mesh, plan_.mesh, plan_.features);
     return take_if_nearer(improved(std::move(mesh))) ? rows : 0;
@@ -94,7 +95,7 @@ class CountSettling {
       if (changed == 0) return false;
       target = now_.quads + changed / 2;
       finishing_.make_mirrorable(bare, context_);
-      const bool is_worth_it = is_worth_improving(error_of(static_cast<int>(bare.quads.size())), now_.error);
+      const bool is_worth_it = is_worth_improving(error_of(static_cast<double>(bare.quads.size()), wanted_), now_.error);
       if (take_if_nearer(bare) || (is_worth_it && may_improve() && take_if_nearer(improved(std::move(bare))))) {
         result_.repairs.fitted_quads += std::abs(changed);
         return true;
@@ -147,9 +148,11 @@ bool is_worth_improving(double error_then, double error_now) {
 void settle_count(const ComponentPlan& plan, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                   const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
   if (!options.improve || !plan.guides.empty() || wishes.most_stretch > 1) return;
-  const Finishing finishing(plan, whole, wishes, options);
-  const RunContext stage = context.in_stage("count", 0.97, 0.97);
-  clock.measure("count", [&] { CountSettling(plan, wanted, finishing, whole, result, stage).run(); });
+  clock.measure("count", [&] {
+    if (!is_far_off(static_cast<double>(result.mesh.quads.size()), wanted)) return;
+    const Finishing finishing(plan, whole, wishes, options);
+    CountSettling(plan, wanted, finishing, whole, result, context.in_stage("count", 0.97, 0.97)).run();
+  });
 }
 
 }  // namespace hybrid_quad

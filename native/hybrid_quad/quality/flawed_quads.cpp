@@ -112,6 +112,16 @@ bool agrees_in(const SurfaceIndex& surface, const Ball& ball, const Vector3& nor
   });
 }
 
+/// Of a quad that counts as one.
+double least_area_of(const QuadMesh& mesh) {
+  constexpr double kLeastArea = 1e-10;
+  double sum = 0;
+  for (const auto& v : mesh.quads)
+    for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
+  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
+  return kLeastArea * mean * mean;
+}
+
 /// The quads for which test(q) holds, ascending.
 template <class Test>
 std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test) {
@@ -158,13 +168,17 @@ bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const S
 }
 
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
-  constexpr double kLeastArea = 1e-10;
-  double sum = 0;
-  for (const auto& v : mesh.quads)
-    for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[(i + 1) % 4]] - mesh.positions[v[i]]).norm();
-  const double mean = sum / (4.0 * static_cast<double>(mesh.quads.size()));
-  return quads_that(mesh, threads,
-                    [&](int q) { return is_flawed(corners_of(mesh, q), kLeastArea * mean * mean, surface, agreement); });
+  const double least_area = least_area_of(mesh);
+  return quads_that(mesh, threads, [&](int q) { return is_flawed(corners_of(mesh, q), least_area, surface, agreement); });
+}
+
+std::vector<int> flawed_among(const std::vector<int>& candidates, const QuadMesh& mesh, const SurfaceIndex& surface,
+                              const Agreement& agreement) {
+  const double least_area = least_area_of(mesh);
+  std::vector<int> found;
+  for (const int q : candidates)
+    if (is_flawed(corners_of(mesh, q), least_area, surface, agreement)) found.push_back(q);
+  return found;
 }
 
 }  // namespace hybrid_quad

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/mesh/bucket_sort.h"
 #include "hybrid_quad/mesh/segment_index.h"
 
 namespace hybrid_quad {
@@ -27,7 +28,7 @@ std::vector<Side> sorted_sides(const QuadMesh& mesh) {
       const int a = mesh.quads[q][i], b = mesh.quads[q][(i + 1) % 4];
       sides.push_back({std::min(a, b), std::max(a, b), 4 * q + i});
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  bucket_sort(sides, [](const Side& x) { return x.low; }, [](const Side& x, const Side& y) {
     return std::tie(x.low, x.high, x.dart) < std::tie(y.low, y.high, y.dart);
   });
   return sides;
@@ -210,7 +211,7 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
   const double diagonal = input.mesh().diagonal();
   if (quads.quads.empty() || !(diagonal > 0)) return distance;
   const TriangleMesh triangles = triangulated(quads);
-  const SurfaceIndex output(triangles, {});
+  const SurfaceIndex output(triangles, {}, context.threads);
   const Tally there = one_sided_distance(triangles, input, samples / 2, context);
   const Tally back = one_sided_distance(input.mesh(), output, samples / 2, context);
   distance.quads_to_input_max = 100 * there.largest / diagonal;

@@ -59,6 +59,10 @@ bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const S
 /// Quads that are, where the least area is 1e-10 of the squared mean edge length. Ascending.
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
+/// Those of `candidates` (ascending) that are. Ascending.
+std::vector<int> flawed_among(const std::vector<int>& candidates, const QuadMesh& mesh, const SurfaceIndex& surface,
+                              const Agreement& agreement);
+
 /// Distances in percent of the diagonal of the input's bounding box.
 struct SurfaceDistance {
   double quads_to_input_max = 0;

@@ -87,7 +87,7 @@ bool raise_around_folds(const TriangleMesh& mesh, const std::vector<std::array<d
 template <class Solver>
 void correct(const WorkingSurface& surface, const FrameField& field, const CurlCorrectionOptions& options, CorrectionCosts costs,
              std::vector<std::array<double, 4>>& x, const RunContext& context) {
-  const Solver solver(surface.mesh, field, costs);
+  Solver solver(surface.mesh, field, costs);
   for (int round = 0;; ++round) {
     context.checkpoint(0.1);
     solver.solve(costs, options.curl_weight, x, context);

@@ -90,11 +90,12 @@ void VertexPotentials::assemble(const CorrectionCosts& costs, double lambda, Spa
 }
 
 void VertexPotentials::solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x,
-                             const RunContext& context) const {
+                             const RunContext& context) {
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
   assemble(costs, lambda, matrix, right_side);
-  const Eigen::VectorXd value = solve_sparse(matrix, right_side, place_, context);
+  if (!factor_) factor_.emplace(matrix, place_, context);
+  const Eigen::VectorXd value = solve_sparse(matrix, right_side, *factor_, context);
   for (int f = 0; f < static_cast<int>(gradient_.size()); ++f)
     for (int row = 0; row < 2; ++row) {
       const double first = value[unknown(3 * f, row)], second = value[unknown(3 * f + 1, row)], third = value[unknown(3 * f + 2, row)];

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "hybrid_quad/frame_field/frame_field.h"
+#include "hybrid_quad/numerics/sparse_factor.h"
 #include "hybrid_quad/numerics/sparse_matrix.h"
 #include "hybrid_quad/sizing/correction_costs.h"
 #include "hybrid_quad/sizing/disk_cut.h"
@@ -22,7 +24,7 @@ class VertexPotentials {
   /// \param lambda  what X - I costs, beside the curl of cut edges; no unit
   /// \param x       gets #F matrices {X00, X01, X10, X11}, which act on the grid vectors of their faces
   /// \throws Cancelled if the caller asked to stop
-  void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context) const;
+  void solve(const CorrectionCosts& costs, double lambda, std::vector<std::array<double, 4>>& x, const RunContext& context);
 
  private:
   /// Row X_r of a face's correction is this times what function r grows by along the face's first two edges.
@@ -42,6 +44,7 @@ class VertexPotentials {
   std::vector<Gradient> gradient_;  ///< #F
   std::vector<Spring> springs_;
   std::vector<Vector3> place_;  ///< per unknown
+  std::optional<SparseFactor> factor_;  ///< the first solution makes it: other stiffnesses have the same pattern
 };
 
 }  // namespace hybrid_quad
