@@ -183,8 +183,7 @@ def until_finished() -> Iterator[float]:
 def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
     """Of the window, into FOLDER, or another where there is none. Gives its path, or an empty text where neither is known.
 
-    Blender 4 and newer take black ones from here, so there somebody else is asked: the program that watches FOLDER for
-    files NAME.wanted, and removes them when NAME is there.
+    Blender 4 and newer take black ones from here, so there somebody else is asked.
     """
     if PICTURES:
         folder = PICTURES[0]
@@ -197,13 +196,21 @@ def take_picture(name: str, folder: str = "") -> Generator[float, None, str]:
             bpy.ops.screen.screenshot(filepath=str(path))
         yield 0.3
         return str(path)
-    wanted = path.with_name(f"{name}.wanted")
-    wanted.touch()
-    for _ in range(100):
+    yield from ask(name, folder=folder)
+    return str(path)
+
+
+def ask(name: str, text: str = "", folder: str = "") -> Iterator[float]:
+    """Has somebody outside do what Blender cannot: the program that removes FOLDER/NAME.wanted when it is done."""
+    wanted = Path(folder or PICTURES[0]).resolve() / f"{name}.wanted"
+    written = wanted.with_suffix(".part")
+    written.write_text(text)
+    written.rename(wanted)
+    for _ in range(200):
         if not wanted.exists():
-            return str(path)
+            return
         yield 0.2
-    raise AssertionError(f"nobody takes pictures for {path.parent}")
+    raise AssertionError(f"nobody does what is asked for in {wanted.parent}")
 
 
 def pixels_of(path: str) -> np.ndarray:
