@@ -17,8 +17,12 @@ from hybrid_quad.core import native
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parents[1] / "scripts" / "lib"
 HAS_EXTENSIONS = bpy.app.version >= (4, 2, 0)
-KINDS = ["legacy", pytest.param("extension", marks=pytest.mark.skipif(not HAS_EXTENSIONS, reason="Blender 4.2"))]
 RELEASED = os.environ.get("HQ_ZIPS", "")
+FITS_LEGACY = not RELEASED or sys.version_info < (3, 12)
+KINDS = [
+    pytest.param("legacy", marks=pytest.mark.skipif(not FITS_LEGACY, reason="a release's is for Pythons up to 3.11")),
+    pytest.param("extension", marks=pytest.mark.skipif(not HAS_EXTENSIONS, reason="Blender 4.2")),
+]
 PYTHONS = 2 if RELEASED else 1  # that a zip is for
 CHECKER = Path(bpy.utils.resource_path("LOCAL"), "scripts", "addons_core", "bl_pkg", "cli", "blender_ext.py")
 
