@@ -18,11 +18,10 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import PICTURES, ask, expect, in_view, main, show_sidebar_tab, take_picture, view
+from run_in_window import PATIENCE, PICTURES, ask, expect, in_view, main, show_sidebar_tab, take_picture, view
 
 NAME = "bl_ext.user_default.hybrid_quad"
 REMESH_BUTTON = 125  # pixels from the sidebar's top down to its middle
-PATIENCE = 120
 
 
 def steps() -> Iterator[float]:
