@@ -18,9 +18,22 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import PATIENCE, PICTURES, ask, expect, in_view, main, show_sidebar_tab, take_picture, view
+from run_in_window import (
+    PATIENCE,
+    PICTURES,
+    ask,
+    drawn,
+    expect,
+    in_view,
+    main,
+    show_sidebar_tab,
+    take_picture,
+    view,
+    watched,
+)
 
 NAME = "bl_ext.user_default.hybrid_quad"
+REPORT = "VIEW3D_PT_hybrid_quad_report"
 REMESH_BUTTON = 125  # pixels from the sidebar's top down to its middle
 
 
@@ -47,16 +60,20 @@ def steps() -> Iterator[float]:
     yield from show_sidebar_tab()
     yield from take_picture("drop_2_installed.png")
 
+    report = getattr(bpy.types, REPORT)
+    report.draw = watched(report.draw, REPORT)
     region = next(region for region in view()[1].regions if region.type == "UI")
     yield from ask("click", on_screen(region.x + region.width // 2, region.y + region.height - REMESH_BUTTON))
     yield from until(lambda: "Cube Quads" in bpy.data.objects, "a click on the button remeshes")
     faces = bpy.data.objects["Cube Quads"].data.polygons
     expect(len(faces) > 100 and {len(face.vertices) for face in faces} == {4}, f"{len(faces)} quads")
     expect(source.hide_get(), "the source is hidden")
-    yield 5.0  # the panel moves to its new place, slowly without a graphics card
+    yield from until(lambda: REPORT in drawn, "the result's report is drawn")
+    yield 5.0  # panels move to their new places, slowly without a graphics card
     yield from take_picture("drop_3_remeshed.png")
     bpy.ops.wm.quit_blender()
-    yield 60.0
+    yield float(PATIENCE)
+    expect(False, "Blender ends, and with status 0")
 
 
 def is_enabled() -> bool:

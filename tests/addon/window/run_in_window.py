@@ -244,6 +244,8 @@ def with_picture_of_failure(test: Iterator[float]) -> Iterator[float]:
     """The test; should it fail, ``failed.png`` shows what was on the screen."""
     try:
         yield from test
+    except GeneratorExit:  # Blender ends
+        raise
     except BaseException:
         traceback.print_exc()
         yield from take_picture("failed.png")
