@@ -9,7 +9,7 @@ OPENSUBDIV=3.5.0
 # Of macOS, for which Blender's own builds of 3.4 and newer are made.
 OLDEST_MACOS=11.0
 # Which Debian has the headers of a Python.
-declare -A DEBIAN_OF=([3.11]=bookworm [3.13]=trixie)
+declare -A DEBIAN_OF=([3.11]=bookworm [3.13]=trixie [3.14]=forky)
 
 # Elsewhere they are taken from JavaCPP's packages of CPython: their versions, and their SHA-256.
 declare -A JAVACPP_OF=([3.10]=3.10.8-1.5.8 [3.11]=3.11.3-1.5.9 [3.13]=3.13.5-1.5.12)

@@ -17,7 +17,13 @@ from hybrid_quad.core import native
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parents[1] / "scripts" / "lib"
 HAS_EXTENSIONS = bpy.app.version >= (4, 2, 0)
-KINDS = ["legacy", pytest.param("extension", marks=pytest.mark.skipif(not HAS_EXTENSIONS, reason="Blender 4.2"))]
+RELEASED = os.environ.get("HQ_ZIPS", "")
+FITS_LEGACY = not RELEASED or sys.version_info < (3, 12)
+KINDS = [
+    pytest.param("legacy", marks=pytest.mark.skipif(not FITS_LEGACY, reason="a release's is for Pythons up to 3.11")),
+    pytest.param("extension", marks=pytest.mark.skipif(not HAS_EXTENSIONS, reason="Blender 4.2")),
+]
+PYTHONS = 2 if RELEASED else 1  # that a zip is for
 CHECKER = Path(bpy.utils.resource_path("LOCAL"), "scripts", "addons_core", "bl_pkg", "cli", "blender_ext.py")
 
 
@@ -31,7 +37,14 @@ def python(*words):
 
 @pytest.fixture(scope="module")
 def zips(tmp_path_factory):
-    """The zip of each kind, of the compiled module that these tests use; built by the scripts of a release."""
+    """The zip of each kind, of the compiled module that these tests use, or of a release in the folder HQ_ZIPS."""
+    if RELEASED:
+        released = Path(RELEASED)
+        number = hybrid_quad.__version__
+        return {
+            "legacy": released / f"hybrid_quad-{number}-legacy-linux-x64.zip",
+            "extension": released / f"hybrid_quad-{number}-linux-x64.zip",
+        }
     folder = tmp_path_factory.mktemp("zips")
     module = native.load().__file__
     wheel = python(
@@ -89,8 +102,10 @@ def test_blender_s_checker_finds_the_extension_valid(zips):
 def test_a_zip_has_what_it_needs_and_nothing_else(zips):
     extension, legacy = (zipfile.ZipFile(zips[kind]).namelist() for kind in ("extension", "legacy"))
     assert all(name.startswith("hybrid_quad/") for name in legacy)
-    assert [name for name in legacy if name.endswith(".so")] == [f"hybrid_quad/{Path(native.load().__file__).name}"]
-    assert sum(name.endswith(".whl") for name in extension) == 1
+    modules = [name for name in legacy if name.endswith(".so")]
+    assert len(modules) == PYTHONS and all(name.startswith("hybrid_quad/_native.") for name in modules)
+    assert RELEASED or f"hybrid_quad/{Path(native.load().__file__).name}" in modules
+    assert sum(name.endswith(".whl") for name in extension) == PYTHONS
     for names in (extension, legacy):
         assert not [name for name in names if "__pycache__" in name or "\\" in name]
     # A manifest makes an extension of a zip, and that needs wheels.

@@ -20,7 +20,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
+from run_in_window import PATIENCE, expect, in_view, main, press, show_sidebar_tab, take_picture, until_finished, view
 
 import hybrid_quad
 from hybrid_quad.blender import background_run, operators, task_solving
@@ -404,7 +404,7 @@ def start(quads: int, mode: str = "NEW") -> Iterator[float]:
     """Remeshes the sphere; a long run is waited for until it tells how far it is."""
     run = begin(quads, mode)
     began = time.monotonic()
-    while quads == LONG_RUN_QUADS and run.fraction == 0 and time.monotonic() - began < 60:
+    while quads == LONG_RUN_QUADS and run.fraction == 0 and time.monotonic() - began < PATIENCE:
         yield 0.05
     expect(not run.is_finished, "and goes on")
 
@@ -434,7 +434,7 @@ def expect_unchanged_after(end) -> Iterator[float]:
     before, run = scene(), background_run.current()
     began = time.monotonic()
     end()
-    while background_run.current() is not None and time.monotonic() - began < 30:
+    while background_run.current() is not None and time.monotonic() - began < PATIENCE:
         yield 0.02
     print(f"ended in {time.monotonic() - began:.2f} s", flush=True)
     expect(background_run.current() is None and run.worker.wait(5), "the run is over")
