@@ -24,9 +24,9 @@ constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
+                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context, bool and_folded)
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
-        context_(context), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
+        context_(context), memory_(whole, agreement, mean_edge_length(quads), and_folded), futile_(mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
   int run() {
@@ -175,7 +175,23 @@ class FlawedSplitter {
 
 int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
-  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context).run();
+  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context, false).run();
+}
+
+int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
+  const bool any = std::any_of(quads.quads.begin(), quads.quads.end(), [&](const auto& v) {
+    const auto& p = quads.positions;
+    return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]});
+  });
+  if (!any) return 0;
+  const SurfaceIndex& judged = whole ? *whole : index;
+  QuadMesh split = quads;
+  const int splits = FlawedSplitter(split, input, features, index, judged, agreement, options, context, true).run();
+  if (splits == 0 || flawed_quads(split, judged, agreement, context.threads).size() > flawed_quads(quads, judged, agreement, context.threads).size())
+    return 0;
+  quads = std::move(split);
+  return splits;
 }
 
 }  // namespace hybrid_quad
