@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "hybrid_quad/improve/flaw_memory.h"
@@ -71,45 +72,32 @@ TEST(RaiseShapes, NoQuadIsTurnedOverForShape) {
   EXPECT_GE(shape_quality(square.quads).scaled_jacobian_min, worst);
 }
 
-/// A square of which all corners are given: one inside, beyond the diagonal between its neighbours.
-struct Wedge {
-  Wedge() : input(test::flat_grid(kSide, kSide, kSide, kSide)) {
+/// Four quads around a corner inside a square: where it is given, (c, c), one of them is a triangle (9) or concave (10).
+struct Cross {
+  Cross(VertexKind halfway, int c) : input(test::flat_grid(kSide, kSide, kSide, kSide)) {
     FeatureOptions options;
     options.corners = {id(0, 0), id(kSide, 0), id(kSide, kSide), id(0, kSide)};
-    for (int k = 8; k < kSide; ++k) options.marked_edges.push_back({id(k, k), id(k + 1, k + 1)});
     features = detect_features(input, options, RunContext{});
     index = std::make_unique<SurfaceIndex>(input, features.face_region);
-    for (const int v : {id(0, 0), id(kSide, 0), id(kSide, kSide), id(0, kSide), id(8, 8)}) {
-      quads.positions.push_back(input.position(v));
-      quads.kind.push_back(VertexKind::kCorner);
-      quads.anchor.push_back(v);
-      quads.near_face.push_back(-1);
-    }
-    // Halves of the boundary's sides, so that three quads meet at the inner corner.
-    for (const int v : {id(kSide, 6), id(6, kSide)}) {
-      quads.positions.push_back(input.position(v));
-      quads.kind.push_back(VertexKind::kCurve);
-      quads.anchor.push_back(-1);
-      quads.near_face.push_back(-1);
-    }
-    quads.quads = {{0, 1, 4, 3}, {1, 5, 2, 4}, {4, 2, 6, 3}};
-    for (int c = 0; c < static_cast<int>(features.curves.size()); ++c) {
-      const std::vector<int>& along = features.curves[c].vertices;
-      const auto vertex = [&](int v) {
-        return static_cast<int>(std::find(quads.anchor.begin(), quads.anchor.end(), v) - quads.anchor.begin());
-      };
-      const int from = vertex(along.front()), to = vertex(along.back());
-      int middle = -1;
-      for (const int v : {5, 6})
-        for (const int on : along)
-          if (input.position(on) == quads.positions[v]) middle = v;
-      if (middle < 0) {
-        quads.feature_edges.push_back({from, to, c});
-        continue;
+    const std::array<int, 3> at{0, kSide / 2, kSide};
+    for (const int y : at)
+      for (const int x : at) {
+        const bool is_halfway = (x == kSide / 2) != (y == kSide / 2), is_inside = x == kSide / 2 && y == kSide / 2;
+        const int v = is_inside ? id(c, c) : id(x, y);
+        quads.positions.push_back(input.position(v));
+        quads.kind.push_back(is_halfway ? halfway : VertexKind::kCorner);
+        quads.anchor.push_back(v);
+        quads.near_face.push_back(-1);
       }
-      quads.anchor[middle] = c;
-      quads.feature_edges.push_back({from, middle, c});
-      quads.feature_edges.push_back({middle, to, c});
+    quads.quads = {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}};
+    for (int k = 0; k < static_cast<int>(features.curves.size()); ++k) {
+      const std::vector<int>& along = features.curves[k].vertices;
+      std::vector<int> chain;
+      for (const int on : along)
+        for (int v = 0; v < 9; ++v)
+          if (quads.positions[v] == input.position(on)) chain.push_back(v);
+      for (std::size_t i = 0; i + 1 < chain.size(); ++i) quads.feature_edges.push_back({chain[i], chain[i + 1], k});
+      if (halfway == VertexKind::kCurve) quads.anchor[chain[1]] = k;
     }
   }
 
@@ -124,31 +112,43 @@ bool any_folded(const QuadMesh& mesh) {
   return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}); });
 }
 
-TEST(SplitFolded, AConcaveQuadBetweenCornersIsSplit) {
-  Wedge wedge;
-  ASSERT_TRUE(violations_of(wedge.quads).empty());
-  ASSERT_TRUE(any_folded(wedge.quads));
+TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
+  Cross cross(VertexKind::kCorner, 9);
+  ASSERT_TRUE(violations_of(cross.quads).empty());
+  ASSERT_TRUE(any_folded(cross.quads));
+  ASSERT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
   const auto call = [&](auto function) {
-    return function(wedge.quads, wedge.input, wedge.features, *wedge.index, ImproveOptions{}, Agreement{}, RunContext{}, nullptr);
+    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}, nullptr);
   };
-  EXPECT_EQ(call(raise_shapes), 0);  // nothing there may move far enough
+  EXPECT_EQ(call(raise_shapes), 0);  // all vertices are given
   EXPECT_GT(call(split_folded_quads), 0);
-  EXPECT_FALSE(any_folded(wedge.quads));
-  EXPECT_TRUE(violations_of(wedge.quads).empty());
-  EXPECT_TRUE(flawed_quads(wedge.quads, *wedge.index, {}).empty());
+  EXPECT_FALSE(any_folded(cross.quads));
+  EXPECT_TRUE(violations_of(cross.quads).empty());
+  EXPECT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
+  EXPECT_EQ(call(split_folded_quads), 0);
+}
+
+TEST(RaiseShapes, VerticesSlideAlongTheirCurves) {
+  Cross cross(VertexKind::kCurve, 10);
+  ASSERT_TRUE(any_folded(cross.quads));
+  EXPECT_GT(raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}), 0);
+  EXPECT_FALSE(any_folded(cross.quads));
+  for (const int v : {1, 7}) EXPECT_EQ(cross.quads.positions[v].y(), v == 1 ? 0 : kSide);
+  for (const int v : {3, 5}) EXPECT_EQ(cross.quads.positions[v].x(), v == 3 ? 0 : kSide);
+  EXPECT_EQ(cross.quads.positions[4], Vector3(10, 10, 0));
 }
 
 TEST(Workpiece, VerticesOnACurveKeepApart) {
-  Wedge wedge;
-  Workpiece piece(wedge.quads, wedge.input, wedge.features, *wedge.index);
+  Cross cross(VertexKind::kCurve, 10);
+  Workpiece piece(cross.quads, cross.input, cross.features, *cross.index);
   piece.locate_all();
-  constexpr int kMiddle = 5;
+  constexpr int kHalfway = 5;
   for (const int direction : {1, -1}) {
-    const double gap = piece.gap(kMiddle, direction);
-    EXPECT_DOUBLE_EQ(gap, 6);
-    EXPECT_DOUBLE_EQ(piece.room(kMiddle, direction, 1), 0.8 * gap);
-    EXPECT_DOUBLE_EQ(piece.room(kMiddle, direction, 30), gap - 3);
-    EXPECT_DOUBLE_EQ(piece.room(kMiddle, direction, 100), 0);
+    const double gap = piece.gap(kHalfway, direction);
+    EXPECT_DOUBLE_EQ(gap, kSide / 2);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 1), 0.8 * gap);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 30), gap - 3);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 100), 0);
   }
 }
 
