@@ -188,8 +188,8 @@ int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
   const SurfaceIndex& judged = whole ? *whole : index;
   QuadMesh split = quads;
   const int splits = FlawedSplitter(split, input, features, index, judged, agreement, options, context, true).run();
-  if (splits == 0 || flawed_quads(split, judged, agreement, context.threads).size() > flawed_quads(quads, judged, agreement, context.threads).size())
-    return 0;
+  const auto flawed = [&](const QuadMesh& mesh) { return flawed_quads(mesh, judged, agreement, context.threads).size(); };
+  if (splits == 0 || flawed(split) > flawed(quads)) return 0;
   quads = std::move(split);
   return splits;
 }

@@ -86,6 +86,7 @@ int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceInd
   const Finishing finishing(plan, whole, wishes, options);
   const RunContext improving = context.in_stage("improve", 0.97, 0.97);
   const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
+  if (count == 0) return 0;
   const Doubts doubts = finishing.doubts(result.mesh, context.threads);
   result.flawed_quads = static_cast<int>(doubts.flawed.size());
   result.doubtful_quads = static_cast<int>(doubts.doubtful.size());
@@ -173,7 +174,9 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
   }
   if (planned.guides.empty() && options.improve) {
-    const auto put_best_right = [&](LastMeans means) { return put_right(means, *plan_of_best, whole, wishes, options, best, clock, context); };
+    const auto put_best_right = [&](LastMeans means) {
+      return put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+    };
     best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
     const int splits = put_best_right(&Finishing::split_folded);
     best.repairs.split_sides += splits;
