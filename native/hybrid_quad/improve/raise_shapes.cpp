@@ -171,7 +171,9 @@ class ShapeDescent {
       }
       return places;
     }
-    const Vector3 normal = piece_.input.normal(here.face), x = step * edge * normal.unitOrthogonal(), y = normal.cross(x);
+    // Directions of the face, the same however the surface lies in space.
+    const Vector3 normal = piece_.input.normal(here.face);
+    const Vector3 x = step * edge * piece_.input.edge_vector(3 * here.face).normalized(), y = normal.cross(x);
     for (int k = 0; k < kDirections; ++k) {
       const SurfacePoint target = piece_.walk(here.position + std::cos(k * kTurn) * x + std::sin(k * kTurn) * y, here.face);
       if (target.face >= 0) places.push_back({target.position, target.face, here.arc});
