@@ -85,7 +85,7 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const SurfaceIndex* whole = nullptr);
 
 /// The same against quads with a scaled Jacobian of zero or less (or hardly more), flawed or not: mostly quads between corners and
-/// curves, whose places are given. No more are flawed afterwards.
+/// curves, whose places are given. No more are flawed afterwards, and there are hardly more quads.
 /// \returns sides split
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,

@@ -147,8 +147,8 @@ class PlaceSearch {
     const CurveGeometry& curve = piece_.curves[piece_.mesh.anchor(v)];
     std::vector<Place> places;
     for (const int direction : {1, -1})
-      for (const double part : {0.9, 0.5, 0.25, 0.1}) {
-        const double arc = curve.normalized(piece_.arc[v] + direction * part * piece_.room(v, direction, piece_.edge_at(v)));
+      for (const double part : {0.7, 0.4, 0.2, 0.1}) {
+        const double arc = curve.normalized(piece_.arc[v] + direction * part * piece_.gap(v, direction));
         places.push_back({curve.at(arc), piece_.face[v], arc});
       }
     return places;

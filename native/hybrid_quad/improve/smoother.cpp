@@ -315,6 +315,7 @@ double Smoother::move_free(int v, double size) {
 }
 
 double Smoother::move_on_curve(int v, double size) {
+  constexpr double kPartOfGap = 0.8;
   const CurveGeometry& curve = piece_.curves[piece_.mesh.anchor(v)];
   const Vector3 start = piece_.mesh.positions[v];
   const double arc = piece_.arc[v];
@@ -338,7 +339,7 @@ double Smoother::move_on_curve(int v, double size) {
   double t = -gradient / hessian;
   if (!std::isfinite(t) || std::abs(t) < 1e-7 * size) return 0;
   t = std::max(-kLongestStep * size, std::min(kLongestStep * size, t));
-  t = std::max(-piece_.room(v, -1, size), std::min(piece_.room(v, 1, size), t));
+  t = std::max(-kPartOfGap * piece_.gap(v, -1), std::min(kPartOfGap * piece_.gap(v, 1), t));
   for (int k = 0; k < kBacktracks; ++k) {
     const double target = curve.normalized(arc + t);
     const Vector3 position = curve.at(target);
