@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -24,19 +25,20 @@ constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
+                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context, bool and_folded)
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
-        context_(context), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
+        context_(context), memory_(whole, agreement, mean_edge_length(quads), and_folded), futile_(mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
-  int run() {
+  /// \param most_quads  in all
+  int run(std::size_t most_quads) {
     constexpr int kMostSplits = 24, kMostInVain = 3;
     constexpr std::size_t kMostFlawed = 24;
     int splits = 0, kept = 0;
     std::vector<int> flawed = memory_.flawed_of(quads_);
     QuadMesh best = quads_;
     for (std::size_t least = flawed.size(); least > 0 && least <= kMostFlawed && splits < kMostSplits && splits - kept <= kMostInVain;) {
-      if (!split_any(flawed)) break;
+      if (!split_any(flawed) || quads_.quads.size() > most_quads) break;
       ++splits;
       if (flawed.size() >= least) continue;
       least = flawed.size();
@@ -175,7 +177,27 @@ class FlawedSplitter {
 
 int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
-  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context).run();
+  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context, false)
+      .run(std::numeric_limits<std::size_t>::max());
+}
+
+int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
+  // Folded quads are valid: the number that was asked for matters more than many of them.
+  constexpr std::size_t kMostMore = 50, kFewMore = 8;  // a fiftieth of the quads, or a few
+  const bool any = std::any_of(quads.quads.begin(), quads.quads.end(), [&](const auto& v) {
+    const auto& p = quads.positions;
+    return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]});
+  });
+  if (!any) return 0;
+  const SurfaceIndex& judged = whole ? *whole : index;
+  QuadMesh split = quads;
+  const std::size_t most_quads = quads.quads.size() + std::max(kFewMore, quads.quads.size() / kMostMore);
+  const int splits = FlawedSplitter(split, input, features, index, judged, agreement, options, context, true).run(most_quads);
+  const auto flawed = [&](const QuadMesh& mesh) { return flawed_quads(mesh, judged, agreement, context.threads).size(); };
+  if (splits == 0 || flawed(split) > flawed(quads)) return 0;
+  quads = std::move(split);
+  return splits;
 }
 
 }  // namespace hybrid_quad

@@ -200,6 +200,21 @@ double Workpiece::gap(int v, int direction) const {
   return curve.closed() && distance <= 0 ? distance + curve.length() : distance;
 }
 
+double Workpiece::room(int v, int direction, double edge) const {
+  constexpr double kPartOfGap = 0.8, kLeastGap = 0.1;
+  const double between = gap(v, direction);
+  return std::max(0.0, std::min(kPartOfGap * between, between - kLeastGap * edge));
+}
+
+double Workpiece::edge_at(int v) const {
+  double sum = 0;
+  for (const int q : mesh.quads_at(v)) {
+    const int i = mesh.corner_of(q, v);
+    for (const int side : {1, 3}) sum += (mesh.positions[mesh.quad(q)[(i + side) & 3]] - mesh.positions[v]).norm();
+  }
+  return sum / (2.0 * mesh.valence(v));
+}
+
 double Workpiece::weighted_gap(int v, int direction) const {
   const CurveGeometry& curve = curves[mesh.anchor(v)];
   const int other = direction > 0 ? next[v] : previous[v];

@@ -44,6 +44,12 @@ struct Workpiece {
   /// Arc length from a curve vertex to its neighbour along the curve (+1) or against it (-1), weighted by curvature.
   double weighted_gap(int v, int direction) const;
   double gap(int v, int direction) const;
+  /// How far v may slide along its curve: not to its neighbour, nor nearer to it than a tenth of an edge. With less between two
+  /// vertices nothing would part them again.
+  /// \param edge  typical length around v
+  double room(int v, int direction, double edge) const;
+  /// Mean length of the edges at v.
+  double edge_at(int v) const;
   /// Whether v is on a curve that has a length.
   bool may_slide(int v) const;
 

@@ -79,13 +79,14 @@ Extractable extractable_plan(const ComponentPlan& planned, double count) {
 
 using LastMeans = int (Finishing::*)(QuadMesh&, const RunContext&) const;
 
-/// Last means against flawed quads. Not where guides follow the quads' edges, which keep their number.
+/// Last means against flawed and folded quads. Not where guides follow the quads' edges, which keep their number.
 /// \returns what `means` counts
 int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
               const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
   const Finishing finishing(plan, whole, wishes, options);
   const RunContext improving = context.in_stage("improve", 0.97, 0.97);
   const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
+  if (count == 0) return 0;
   const Doubts doubts = finishing.doubts(result.mesh, context.threads);
   result.flawed_quads = static_cast<int>(doubts.flawed.size());
   result.doubtful_quads = static_cast<int>(doubts.doubtful.size());
@@ -171,6 +172,15 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       best.repairs.split_sides += put_right(&Finishing::split_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
     if (best.flawed_quads > 0)
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
+  }
+  if (planned.guides.empty() && options.improve) {
+    const auto put_best_right = [&](LastMeans means) {
+      return put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+    };
+    best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
+    const int splits = put_best_right(&Finishing::split_folded);
+    best.repairs.split_sides += splits;
+    if (splits > 0) best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
   }
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh), &whole, least_agreement(whole));
   return best;

@@ -30,6 +30,10 @@ class Finishing {
   int split_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// What is left to do where no side to split helps (refine_flawed_quads). \returns places refined
   int refine_flawed(QuadMesh& mesh, const RunContext& context) const;
+  /// Places around quads of poor shape (raise_shapes). \returns their number
+  int raise_shapes(QuadMesh& mesh, const RunContext& context) const;
+  /// Sides of quads that no places put right (split_folded_quads). \returns their number
+  int split_folded(QuadMesh& mesh, const RunContext& context) const;
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 

@@ -87,8 +87,9 @@ struct RepairRecord {
   int opened_straight_quads = 0; ///< quads with three sides on one feature
   int mended_places = 0;         ///< changes that only flawed quads called for
   int poor_places = 0;  ///< around quads of poor shape, whose vertices were placed anew
-  int split_sides = 0;           ///< sides of flawed quads split in three, when all else was done
+  int split_sides = 0;           ///< sides of flawed or folded quads split in three, when all else was done
   int refined_places = 0;        ///< around flawed quads that were refined, where that was not enough
+  int raised_places = 0;         ///< around quads of poor shape that got a better one in the end
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
 

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "hybrid_quad/improve/flaw_memory.h"
+#include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/improve/workpiece.h"
+#include "hybrid_quad/quality/quality.h"
+#include "support/meshes.h"
+
+namespace hybrid_quad {
+namespace {
+
+constexpr int kSide = 12;
+
+int id(int i, int j) { return (kSide + 1) * j + i; }
+
+/// A flat square with even quads.
+struct Square {
+  Square() : input(test::flat_grid(kSide, kSide, kSide, kSide)), features(detect_features(input, FeatureOptions{}, RunContext{})), index(input, features.face_region) {
+    for (int j = 0; j <= kSide; ++j)
+      for (int i = 0; i <= kSide; ++i) {
+        quads.positions.emplace_back(i, j, 0);
+        quads.kind.push_back(VertexKind::kFree);
+        quads.anchor.push_back(features.face_region[0]);
+        quads.near_face.push_back(-1);
+      }
+    for (int j = 0; j < kSide; ++j)
+      for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+  }
+  int raise() { return raise_shapes(quads, input, features, index, ImproveOptions{}, Agreement{}, RunContext{}); }
+
+  TriangleMesh input;
+  FeatureGraph features;
+  SurfaceIndex index;
+  QuadMesh quads;
+};
+
+TEST(RaiseShapes, AConcaveQuadGetsAGoodShapeAndWhatIsFarStays) {
+  Square square;
+  square.quads.positions[id(6, 6)] = {6.7, 6.7, 0};
+  const QuadMesh before = square.quads;
+  ASSERT_LT(shape_quality(before).scaled_jacobian_min, 0);
+  ASSERT_TRUE(flawed_quads(before, square.index, {}).empty());
+  EXPECT_GT(square.raise(), 0);
+  EXPECT_GT(shape_quality(square.quads).scaled_jacobian_min, 0.2);
+  EXPECT_EQ(square.quads.quads, before.quads);
+  for (int j = 0; j <= kSide; ++j)
+    for (int i = 0; i <= kSide; ++i) {
+      EXPECT_EQ(square.quads.positions[id(i, j)].z(), 0);
+      if (std::max(std::abs(i - 6), std::abs(j - 6)) > 4) { EXPECT_EQ(square.quads.positions[id(i, j)], before.positions[id(i, j)]); }
+    }
+}
+
+TEST(RaiseShapes, GoodShapesStay) {
+  Square square;
+  square.quads.positions[id(6, 6)] = {6.2, 6.2, 0};
+  const std::vector<Vector3> before = square.quads.positions;
+  EXPECT_EQ(square.raise(), 0);
+  EXPECT_EQ(square.quads.positions, before);
+}
+
+TEST(RaiseShapes, NoQuadIsTurnedOverForShape) {
+  Square square;
+  std::swap(square.quads.positions[id(5, 5)], square.quads.positions[id(6, 5)]);
+  const std::size_t flawed = flawed_quads(square.quads, square.index, {}).size();
+  const double worst = shape_quality(square.quads).scaled_jacobian_min;
+  square.raise();
+  EXPECT_LE(flawed_quads(square.quads, square.index, {}).size(), flawed);
+  EXPECT_GE(shape_quality(square.quads).scaled_jacobian_min, worst);
+}
+
+/// Four quads around a corner inside a square: where it is given, (c, c), one of them is a triangle (9) or concave (10).
+struct Cross {
+  Cross(VertexKind halfway, int c) : input(test::flat_grid(kSide, kSide, kSide, kSide)) {
+    FeatureOptions options;
+    options.corners = {id(0, 0), id(kSide, 0), id(kSide, kSide), id(0, kSide)};
+    features = detect_features(input, options, RunContext{});
+    index = std::make_unique<SurfaceIndex>(input, features.face_region);
+    const std::array<int, 3> at{0, kSide / 2, kSide};
+    for (const int y : at)
+      for (const int x : at) {
+        const bool is_halfway = (x == kSide / 2) != (y == kSide / 2), is_inside = x == kSide / 2 && y == kSide / 2;
+        const int v = is_inside ? id(c, c) : id(x, y);
+        quads.positions.push_back(input.position(v));
+        quads.kind.push_back(is_halfway ? halfway : VertexKind::kCorner);
+        quads.anchor.push_back(v);
+        quads.near_face.push_back(-1);
+      }
+    quads.quads = {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}};
+    for (int k = 0; k < static_cast<int>(features.curves.size()); ++k) {
+      const std::vector<int>& along = features.curves[k].vertices;
+      std::vector<int> chain;
+      for (const int on : along)
+        for (int v = 0; v < 9; ++v)
+          if (quads.positions[v] == input.position(on)) chain.push_back(v);
+      for (std::size_t i = 0; i + 1 < chain.size(); ++i) quads.feature_edges.push_back({chain[i], chain[i + 1], k});
+      if (halfway == VertexKind::kCurve) quads.anchor[chain[1]] = k;
+    }
+  }
+
+  TriangleMesh input;
+  FeatureGraph features;
+  std::unique_ptr<SurfaceIndex> index;
+  QuadMesh quads;
+};
+
+bool any_folded(const QuadMesh& mesh) {
+  const auto& p = mesh.positions;
+  return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}); });
+}
+
+TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
+  Cross cross(VertexKind::kCorner, 9);
+  ASSERT_TRUE(violations_of(cross.quads).empty());
+  ASSERT_TRUE(any_folded(cross.quads));
+  ASSERT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
+  const auto call = [&](auto function) {
+    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}, nullptr);
+  };
+  EXPECT_EQ(call(raise_shapes), 0);  // all vertices are given
+  EXPECT_GT(call(split_folded_quads), 0);
+  EXPECT_FALSE(any_folded(cross.quads));
+  EXPECT_TRUE(violations_of(cross.quads).empty());
+  EXPECT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
+  EXPECT_EQ(call(split_folded_quads), 0);
+}
+
+TEST(RaiseShapes, VerticesSlideAlongTheirCurves) {
+  Cross cross(VertexKind::kCurve, 10);
+  ASSERT_TRUE(any_folded(cross.quads));
+  EXPECT_GT(raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}), 0);
+  EXPECT_FALSE(any_folded(cross.quads));
+  for (const int v : {1, 7}) EXPECT_EQ(cross.quads.positions[v].y(), v == 1 ? 0 : kSide);
+  for (const int v : {3, 5}) EXPECT_EQ(cross.quads.positions[v].x(), v == 3 ? 0 : kSide);
+  EXPECT_EQ(cross.quads.positions[4], Vector3(10, 10, 0));
+}
+
+TEST(Workpiece, VerticesOnACurveKeepApart) {
+  Cross cross(VertexKind::kCurve, 10);
+  Workpiece piece(cross.quads, cross.input, cross.features, *cross.index);
+  piece.locate_all();
+  constexpr int kHalfway = 5;
+  for (const int direction : {1, -1}) {
+    const double gap = piece.gap(kHalfway, direction);
+    EXPECT_DOUBLE_EQ(gap, kSide / 2);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 1), 0.8 * gap);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 30), gap - 3);
+    EXPECT_DOUBLE_EQ(piece.room(kHalfway, direction, 100), 0);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_quad
