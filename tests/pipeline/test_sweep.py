@@ -52,7 +52,7 @@ def test_a_table_of_good_and_bad_runs_made_only_once(root, tmp_path):
 
 def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     big = obj(tmp_path / "big.obj", *surfaces.torus(300, 120))
-    slow = sweep(root, tmp_path / "slow", big, "--quads", 8000, "--settings", "sharp", "--time-limit", 1)
+    slow = sweep(root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--time-limit", 1)
     assert (slow.returncode, rows(tmp_path / "slow")[0]["valid"]) == (1, "timeout")
     assert "1 s of the processor" in rows(tmp_path / "slow")[0]["message"]
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 150)
