@@ -174,8 +174,16 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
   }
   if (planned.guides.empty() && options.improve) {
+    // Shapes only: not for quads of which it is doubtful whether the surface agrees with them.
     const auto put_best_right = [&](LastMeans means) {
-      return put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+      const QuadMesh before = best.mesh;
+      const int flawed = best.flawed_quads, doubtful = best.doubtful_quads;
+      const int count = put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+      if (best.doubtful_quads <= doubtful) return count;
+      best.mesh = before;
+      best.flawed_quads = flawed;
+      best.doubtful_quads = doubtful;
+      return 0;
     };
     best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
     const int splits = put_best_right(&Finishing::split_folded);
