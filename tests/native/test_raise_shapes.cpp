@@ -30,7 +30,7 @@ struct Square {
     for (int j = 0; j < kSide; ++j)
       for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
   }
-  int raise() { return raise_shapes(quads, input, features, index, ImproveOptions{}, Agreement{}, RunContext{}); }
+  int raise() { return raise_shapes(quads, input, features, index, ImproveOptions{}, RunContext{}); }
 
   TriangleMesh input;
   FeatureGraph features;
@@ -118,7 +118,7 @@ TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
   ASSERT_TRUE(any_folded(cross.quads));
   ASSERT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
   const auto call = [&](auto function) {
-    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}, nullptr);
+    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}, nullptr);
   };
   EXPECT_EQ(call(raise_shapes), 0);  // all vertices are given
   EXPECT_GT(call(split_folded_quads), 0);
@@ -131,7 +131,7 @@ TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
 TEST(RaiseShapes, VerticesSlideAlongTheirCurves) {
   Cross cross(VertexKind::kCurve, 10);
   ASSERT_TRUE(any_folded(cross.quads));
-  EXPECT_GT(raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, Agreement{}, RunContext{}), 0);
+  EXPECT_GT(raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}), 0);
   EXPECT_FALSE(any_folded(cross.quads));
   for (const int v : {1, 7}) EXPECT_EQ(cross.quads.positions[v].y(), v == 1 ? 0 : kSide);
   for (const int v : {3, 5}) EXPECT_EQ(cross.quads.positions[v].x(), v == 3 ? 0 : kSide);

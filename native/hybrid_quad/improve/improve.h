@@ -85,11 +85,12 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const SurfaceIndex* whole = nullptr);
 
 /// The same against quads with a scaled Jacobian of zero or less (or hardly more), flawed or not: mostly quads between corners and
-/// curves, whose places are given. No more are flawed afterwards, and there are hardly more quads.
+/// curves, whose places are given. No more are flawed afterwards, by the agreement that improving asks for, and there are hardly more
+/// quads.
+/// \param whole  as for improve_quads
 /// \returns sides split
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
-                       const SurfaceIndex* whole = nullptr);
+                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
 
 /// Against quads that are still flawed: these and some rings around are refined, three by three, and relaxed, where that leaves
 /// fewer. Where sides cut through what they should go around, all of them get bends at once. Much more is changed than by
@@ -103,12 +104,12 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 /// Around quads of poor shape (scaled Jacobian below 0.2), the worst first, moves vertices over the surface and along their curves
 /// so that the worst corners there get better: Gauss-Seidel descent on a soft maximum of the corners' faults, as energies that
 /// spread over all quads (improve_quads) leave a few bad ones for the sake of many good ones. Connectivity stays; a place is kept
-/// only if no more quads are flawed or folded there, the worst is no worse, and all together are better.
-/// \param agreement  of flawed_quads  \param whole  as for improve_quads
+/// only if no more quads are flawed (by the agreement that improving asks for) or folded there, the worst is no worse, and all
+/// together are better.
+/// \param whole  as for improve_quads
 /// \returns places where shapes are better now; 0: nothing has moved
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
-                 const SurfaceIndex* whole = nullptr);
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
 
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
 /// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,

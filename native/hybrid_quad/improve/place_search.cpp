@@ -9,12 +9,6 @@ namespace hybrid_quad {
 
 namespace {
 
-struct Place {
-  Vector3 position;
-  int face;
-  double arc;
-};
-
 /// How bad some quads are: the number of flawed ones counts before all shapes together.
 struct Badness {
   int flawed = 0;
@@ -37,12 +31,12 @@ class PlaceSearch {
   bool run() {
     constexpr double kBetter = 0.05;
     const Badness before = badness(quads_);
-    const std::vector<Place> old = places(around_);
+    const std::vector<VertexPlace> old = places(around_);
     for (const std::vector<int>* vertices : {&core_, &around_}) {
       search(*vertices);
       if (badness(quads_).is_less_than(before, kBetter)) return true;
     }
-    for (std::size_t i = 0; i < around_.size(); ++i) put(around_[i], old[i]);
+    for (std::size_t i = 0; i < around_.size(); ++i) piece_.put(around_[i], old[i]);
     return false;
   }
 
@@ -61,7 +55,7 @@ class PlaceSearch {
   std::vector<int> movable(const std::vector<int>& vertices) const {
     std::vector<int> out;
     for (const int v : vertices)
-      if (!piece_.mesh.is_pinned(v) && (piece_.mesh.is_free(v) ? piece_.face[v] >= 0 : piece_.may_slide(v))) out.push_back(v);
+      if (piece_.may_move(v)) out.push_back(v);
     return out;
   }
 
@@ -106,16 +100,10 @@ class PlaceSearch {
     return true;
   }
 
-  std::vector<Place> places(const std::vector<int>& vertices) const {
-    std::vector<Place> out;
-    for (const int v : vertices) out.push_back({piece_.mesh.positions[v], piece_.face[v], piece_.arc[v]});
+  std::vector<VertexPlace> places(const std::vector<int>& vertices) const {
+    std::vector<VertexPlace> out;
+    for (const int v : vertices) out.push_back(piece_.place_of(v));
     return out;
-  }
-
-  void put(int v, const Place& place) {
-    piece_.mesh.positions[v] = place.position;
-    piece_.face[v] = place.face;
-    piece_.arc[v] = place.arc;
   }
 
   /// To the best of the places near it. \returns whether that is another one
@@ -124,28 +112,28 @@ class PlaceSearch {
     const std::vector<int> quads(piece_.mesh.quads_at(v).begin(), piece_.mesh.quads_at(v).end());
     Badness least = badness(quads);
     if (least.flawed == 0 && least.shapes == 0) return false;
-    Place best{piece_.mesh.positions[v], piece_.face[v], piece_.arc[v]};
+    VertexPlace best = piece_.place_of(v);
     bool found = false;
-    for (const Place& place : places_near(v, far)) {
-      put(v, place);
+    for (const VertexPlace& place : places_near(v, far)) {
+      piece_.put(v, place);
       if (!becomes_less(least, kBetter, quads)) continue;
       best = place;
       found = true;
     }
-    put(v, best);
+    piece_.put(v, best);
     return found;
   }
 
-  std::vector<Place> places_near(int v, bool far) const {
+  std::vector<VertexPlace> places_near(int v, bool far) const {
     if (!piece_.mesh.is_free(v)) return places_on_curve(v);
-    std::vector<Place> places = places_ahead(v);
+    std::vector<VertexPlace> places = places_ahead(v);
     if (far) add_places_around(v, places);
     return places;
   }
 
-  std::vector<Place> places_on_curve(int v) const {
+  std::vector<VertexPlace> places_on_curve(int v) const {
     const CurveGeometry& curve = piece_.curves[piece_.mesh.anchor(v)];
-    std::vector<Place> places;
+    std::vector<VertexPlace> places;
     for (const int direction : {1, -1})
       for (const double part : {0.7, 0.4, 0.2, 0.1}) {
         const double arc = curve.normalized(piece_.arc[v] + direction * part * piece_.gap(v, direction));
@@ -162,9 +150,9 @@ class PlaceSearch {
   }
 
   /// On the surface towards and away from what v shares quads with.
-  std::vector<Place> places_ahead(int v) const {
+  std::vector<VertexPlace> places_ahead(int v) const {
     const Vector3 here = piece_.mesh.positions[v];
-    std::vector<Place> places;
+    std::vector<VertexPlace> places;
     for (const int w : neighbours_of(v))
       for (const double part : {0.6, 0.3, 0.1, -0.1, -0.3}) {
         const SurfacePoint target = piece_.walk(here + part * (piece_.mesh.positions[w] - here), piece_.face[v]);
@@ -174,7 +162,7 @@ class PlaceSearch {
   }
 
   /// Points of the faces that can be reached without leaving the ball around v's neighbours or their region.
-  void add_places_around(int v, std::vector<Place>& places) const {
+  void add_places_around(int v, std::vector<VertexPlace>& places) const {
     constexpr std::size_t kMost = 96;
     constexpr std::array<std::array<double, 3>, 4> kInside{
         {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};

@@ -13,12 +13,6 @@ namespace hybrid_quad {
 
 namespace {
 
-struct Place {
-  Vector3 position;
-  int face;
-  double arc;
-};
-
 std::vector<int> sorted_unique(std::vector<int> list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -55,7 +49,7 @@ class ShapeDescent {
       inside = sorted_unique(std::move(more));
     }
     for (const int v : inside)
-      if (!piece.mesh.is_pinned(v) && (piece.mesh.is_free(v) ? piece.face[v] >= 0 : piece.may_slide(v))) vertices_.push_back(v);
+      if (piece.may_move(v)) vertices_.push_back(v);
     quads_ = quads_at(vertices_);
   }
 
@@ -64,11 +58,11 @@ class ShapeDescent {
   /// \returns whether shapes are better now; everything is as before otherwise
   bool run() {
     const Shapes before = shapes();
-    std::vector<Place> old;
-    for (const int v : vertices_) old.push_back(place_of(v));
+    std::vector<VertexPlace> old;
+    for (const int v : vertices_) old.push_back(piece_.place_of(v));
     descend();
     if (shapes().are_better_than(before)) return true;
-    for (std::size_t i = 0; i < vertices_.size(); ++i) put(vertices_[i], old[i]);
+    for (std::size_t i = 0; i < vertices_.size(); ++i) piece_.put(vertices_[i], old[i]);
     return false;
   }
 
@@ -105,14 +99,6 @@ class ShapeDescent {
     }
   }
 
-  Place place_of(int v) const { return {piece_.mesh.positions[v], piece_.face[v], piece_.arc[v]}; }
-
-  void put(int v, const Place& place) {
-    piece_.mesh.positions[v] = place.position;
-    piece_.face[v] = place.face;
-    piece_.arc[v] = place.arc;
-  }
-
   double energy(int v) const {
     double sum = 0;
     const auto& p = piece_.mesh.positions;
@@ -142,27 +128,27 @@ class ShapeDescent {
   bool move(int v, double step) {
     const double now = energy(v);
     const int flawed = flawed_at(v);
-    const Place here = place_of(v);
-    std::vector<std::pair<double, Place>> better;
-    for (const Place& place : places_at(v, step)) {
-      put(v, place);
+    const VertexPlace here = piece_.place_of(v);
+    std::vector<std::pair<double, VertexPlace>> better;
+    for (const VertexPlace& place : places_at(v, step)) {
+      piece_.put(v, place);
       if (const double there = energy(v); there < now) better.emplace_back(there, place);
     }
     std::stable_sort(better.begin(), better.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
     for (const auto& [there, place] : better) {
-      put(v, place);
+      piece_.put(v, place);
       if (flawed_at(v) <= flawed) return true;
     }
-    put(v, here);
+    piece_.put(v, here);
     return false;
   }
 
-  std::vector<Place> places_at(int v, double step) const {
+  std::vector<VertexPlace> places_at(int v, double step) const {
     constexpr int kDirections = 8;
     constexpr double kTurn = 2 * 3.14159265358979323846 / kDirections;
-    const Place here = place_of(v);
+    const VertexPlace here = piece_.place_of(v);
     const double edge = piece_.edge_at(v);
-    std::vector<Place> places;
+    std::vector<VertexPlace> places;
     if (!piece_.mesh.is_free(v)) {
       const CurveGeometry& curve = piece_.curves[piece_.mesh.anchor(v)];
       for (const int direction : {1, -1}) {
@@ -190,7 +176,7 @@ class ShapeDescent {
 }  // namespace
 
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   constexpr double kPoor = 0.2;
   constexpr int kMostRings = 3;
   constexpr int kLeastEffort = 2000, kEffort = 4;  // vertices moved down, and for every vertex of the mesh
@@ -202,7 +188,7 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   if (poor.empty() || !(piece.h > 0)) return 0;
   std::sort(poor.begin(), poor.end());
   piece.locate_all();
-  const FlawMeasure measure(piece, whole ? *whole : index, agreement);
+  const FlawMeasure measure(piece, whole ? *whole : index, options.agreement);
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
   int raised = 0;
   for (const auto& [shape, q] : poor)

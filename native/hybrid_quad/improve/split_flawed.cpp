@@ -182,7 +182,7 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
 }
 
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
+                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   // Folded quads are valid: the number that was asked for matters more than many of them.
   constexpr std::size_t kMostMore = 50, kFewMore = 8;  // a fiftieth of the quads, or a few
   const bool any = std::any_of(quads.quads.begin(), quads.quads.end(), [&](const auto& v) {
@@ -193,8 +193,8 @@ int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
   const SurfaceIndex& judged = whole ? *whole : index;
   QuadMesh split = quads;
   const std::size_t most_quads = quads.quads.size() + std::max(kFewMore, quads.quads.size() / kMostMore);
-  const int splits = FlawedSplitter(split, input, features, index, judged, agreement, options, context, true).run(most_quads);
-  const auto flawed = [&](const QuadMesh& mesh) { return flawed_quads(mesh, judged, agreement, context.threads).size(); };
+  const int splits = FlawedSplitter(split, input, features, index, judged, options.agreement, options, context, true).run(most_quads);
+  const auto flawed = [&](const QuadMesh& mesh) { return flawed_quads(mesh, judged, options.agreement, context.threads).size(); };
   if (splits == 0 || flawed(split) > flawed(quads)) return 0;
   quads = std::move(split);
   return splits;

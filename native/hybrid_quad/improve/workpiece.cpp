@@ -215,6 +215,14 @@ double Workpiece::edge_at(int v) const {
   return sum / (2.0 * mesh.valence(v));
 }
 
+bool Workpiece::may_move(int v) const { return !mesh.is_pinned(v) && (mesh.is_free(v) ? face[v] >= 0 : may_slide(v)); }
+
+void Workpiece::put(int v, const VertexPlace& place) {
+  mesh.positions[v] = place.position;
+  face[v] = place.face;
+  arc[v] = place.arc;
+}
+
 double Workpiece::weighted_gap(int v, int direction) const {
   const CurveGeometry& curve = curves[mesh.anchor(v)];
   const int other = direction > 0 ? next[v] : previous[v];

@@ -10,6 +10,13 @@
 
 namespace hybrid_quad {
 
+/// Where a vertex is: in space, over the input, along its curve.
+struct VertexPlace {
+  Vector3 position;
+  int face;
+  double arc;
+};
+
 /// The mesh under improvement and where its vertices sit on the input: a face under a free vertex, an arc length for a
 /// vertex on a curve, an input vertex for a corner.
 struct Workpiece {
@@ -52,6 +59,10 @@ struct Workpiece {
   double edge_at(int v) const;
   /// Whether v is on a curve that has a length.
   bool may_slide(int v) const;
+  /// Whether v has another place to go to, over the input or along its curve.
+  bool may_move(int v) const;
+  VertexPlace place_of(int v) const { return {mesh.positions[v], face[v], arc[v]}; }
+  void put(int v, const VertexPlace& place);
 
   int region_count = 0;
 

@@ -174,12 +174,12 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
   }
   if (planned.guides.empty() && options.improve) {
-    // Shapes only: not for quads of which it is doubtful whether the surface agrees with them.
+    // They see to it that no more quads are in doubt; one that was may still have become flawed, which no shape is worth.
     const auto put_best_right = [&](LastMeans means) {
       const QuadMesh before = best.mesh;
       const int flawed = best.flawed_quads, doubtful = best.doubtful_quads;
       const int count = put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
-      if (best.doubtful_quads <= doubtful) return count;
+      if (best.flawed_quads <= flawed) return count;
       best.mesh = before;
       best.flawed_quads = flawed;
       best.doubtful_quads = doubtful;

@@ -20,7 +20,7 @@ from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import PATIENCE, expect, in_view, main, show_sidebar_tab, take_picture, until_finished, view, watched
+from run_in_window import expect, in_view, main, show_sidebar_tab, take_picture, until_finished, view, watched
 from run_paint_in_window import STROKE, add_model, brush, click, drag, guides, look_at_flank, model
 
 import hybrid_quad
@@ -37,6 +37,7 @@ PREVIEW_SWITCH = 532
 FIRST_TOOL = 25
 TOOL_STEP, TOOL_GAP = 36, 5  # from tool to tool, and more where a separator is
 PREVIEW_LEFT = 51  # from the sidebar's left
+PATIENCE = 90
 LONG_RUN_QUADS = 150_000
 
 

@@ -28,7 +28,7 @@ from scenes import add_sphere, faces_of  # noqa: E402
 
 PICTURES = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
 LONG_RUN_QUADS = 150_000
-PATIENCE = 300  # seconds: a busy machine that draws without a graphics card takes its time
+PATIENCE = 60  # seconds
 drawn: set[str] = set()
 
 
@@ -88,15 +88,18 @@ def steps() -> Iterator[float]:
         bpy.ops.object.hybrid_quad_remesh("INVOKE_DEFAULT")
     run = background_run.current()
     started = time.monotonic()
-    while run.fraction == 0 and time.monotonic() - started < PATIENCE:
+    while run.fraction == 0 and time.monotonic() - started < PATIENCE / 2:
         yield 0.05
     yield from take_picture("3_running.png")
     expect(not run.is_finished, "the long run goes on")
     press("ESC")
+    started = time.monotonic()
     yield from until_finished()
+    # The worker is dead within a second; a window drawn without a graphics card takes its time between events.
+    expect(time.monotonic() - started < 20, "Esc ends it")
     try:
         run.result()
-        expect(False, "Esc ends it")
+        expect(False, "the run was cancelled")
     except hybrid_quad.Cancelled:
         pass
     expect((sorted(bpy.data.objects.keys()), sorted(bpy.data.meshes.keys())) == before, "and nothing has changed")

@@ -20,23 +20,14 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from run_in_window import (
-    PATIENCE,
-    expect,
-    in_view,
-    main,
-    pixels_of,
-    show_sidebar_tab,
-    take_picture,
-    view,
-    watch_drawing,
-)
+from run_in_window import expect, in_view, main, pixels_of, show_sidebar_tab, take_picture, view, watch_drawing
 
 import hybrid_quad
 from hybrid_quad.blender import panels as main_panels
 from hybrid_quad.blender.preview import drawing, panels, sessions
 from scenes import activate, add_cube, add_grid, add_sphere
 
+PATIENCE = 90
 BALL = 5  # pixels from the middle of a singularity's ball that are surely within it
 
 

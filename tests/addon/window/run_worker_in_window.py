@@ -434,7 +434,7 @@ def expect_unchanged_after(end) -> Iterator[float]:
     before, run = scene(), background_run.current()
     began = time.monotonic()
     end()
-    while background_run.current() is not None and time.monotonic() - began < PATIENCE:
+    while background_run.current() is not None and time.monotonic() - began < PATIENCE / 2:
         yield 0.02
     print(f"ended in {time.monotonic() - began:.2f} s", flush=True)
     expect(background_run.current() is None and run.worker.wait(5), "the run is over")
