@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from hybrid_quad.core.file_places import MeshFileError
 from hybrid_quad.core.mesh_arrays import FloatArray, IntArray, Polygons
-from hybrid_quad.core.mesh_io import MeshFileError, read_mesh
+from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.strokes import vertex_normals
 
 VARIANTS = ("default", "field", "sizes", "features")

@@ -15,7 +15,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 
-from hybrid_quad.core.mesh_io import MeshFileError, read_mesh
+from hybrid_quad.core.file_places import MeshFileError
+from hybrid_quad.core.mesh_io import read_mesh
 
 
 def main() -> None:

@@ -4,16 +4,11 @@ import numpy as np
 import pytest
 
 from hybrid_quad.cases.case_inputs import MESH, write_copies
-from hybrid_quad.core.mesh_io import (
-    MeshFileError,
-    read_counts,
-    read_edges,
-    read_mesh,
-    read_polylines,
-    read_rows,
-)
+from hybrid_quad.core.file_places import MeshFileError
+from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.part_files import read_part
 from hybrid_quad.core.strokes import kind_of_name
+from hybrid_quad.core.wish_files import read_counts, read_edges, read_polylines, read_rows
 
 OBJ = """# of jane
 o secret

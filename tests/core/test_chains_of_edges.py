@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hybrid_quad.core.curve_counts import as_curve_counts, chains_of_edges
-from hybrid_quad.core.mesh_io import MeshFileError, read_counts
+from hybrid_quad.core.file_places import MeshFileError
+from hybrid_quad.core.wish_files import read_counts
 
 
 def _edges_of(path):

@@ -5,7 +5,9 @@ import pytest
 
 from fuzz.fuzz_readers import damaged, verdict_on
 from hybrid_quad.core import mesh_io
-from hybrid_quad.core.mesh_io import MeshFileError, read_edges, read_mesh, read_polylines, write_mesh
+from hybrid_quad.core.file_places import MeshFileError, replacing
+from hybrid_quad.core.mesh_io import read_mesh, write_mesh
+from hybrid_quad.core.wish_files import read_edges, read_polylines
 from support import surfaces
 
 
@@ -281,7 +283,7 @@ def test_missing_files_and_folders(tmp_path):
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     path = file_with(tmp_path, "a.obj", "old")
-    with pytest.raises(KeyboardInterrupt), mesh_io.replacing(path) as file:
+    with pytest.raises(KeyboardInterrupt), replacing(path) as file:
         file.write(b"half of the new")
         raise KeyboardInterrupt
     assert path.read_text() == "old"

@@ -20,7 +20,9 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from hybrid_quad.core.mesh_io import MeshFileError, read_line_elements, read_mesh  # noqa: E402
+from hybrid_quad.core.file_places import MeshFileError  # noqa: E402
+from hybrid_quad.core.mesh_io import read_mesh  # noqa: E402
+from hybrid_quad.core.wish_files import read_line_elements  # noqa: E402
 from support import surfaces  # noqa: E402
 
 OBJ = b"""# a comment

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import hybrid_quad
-from hybrid_quad.core.mesh_io import MeshFileError, read_line_elements, read_mesh
+from hybrid_quad.core.file_places import MeshFileError
+from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
+from hybrid_quad.core.wish_files import read_line_elements
 from support import surfaces
 
 _DEV = os.environ.get("HQ_MODELS")

@@ -98,3 +98,9 @@ def test_a_preview_can_be_cancelled_and_refuses_what_a_run_refuses():
     with pytest.raises(hybrid_quad.InputError) as caught:
         hybrid_quad.preview([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
     assert caught.value.code == "no_area"
+
+
+def test_settings_of_another_type_are_named():
+    mesh = surfaces.grid(4, 4)
+    with pytest.raises(TypeError, match="options must be RemeshOptions, not dict"):
+        hybrid_quad.preview(*mesh, {"quads": 100})

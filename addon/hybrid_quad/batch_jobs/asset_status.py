@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core import report as reports
-from ..core.mesh_io import replacing
+from ..core.file_places import replacing
 from .settings import Settings
 
 OK = "ok"

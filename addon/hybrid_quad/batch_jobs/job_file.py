@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
-from ..core.mesh_io import replacing
+from ..core.file_places import replacing
 from .asset import Asset
 from .settings import unknown_names
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..core.mesh_io import MeshFileError
+from ..core.file_places import MeshFileError
 from . import asset_status
 from .asset import Asset, AssetFiles, BatchPlan, files_of
 from .asset_lock import asset_lock

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..core.mesh_io import replacing
+from ..core.file_places import replacing
 from . import asset_status
 from .asset import Asset, BatchPlan, files_of
 from .asset_status import AssetStatus, read_status

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .. import __version__
-from ..core.mesh_io import replacing
+from ..core.file_places import replacing
 from . import asset_status
 from .summary import Line, counts
 

@@ -18,7 +18,7 @@ from ..cli.main import main as package_main
 from ..cli.messages import describe_defect, describe_symmetry, what_became_of
 from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.mesh_io import MeshFileError, check_apart, check_place, replacing
+from ..core.file_places import MeshFileError, check_apart, check_place, replacing
 from ..core.options import RemeshOptions
 from ..core.parent_process import end_with_stdin
 from . import case_command

@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import __version__
 from ..batch_jobs.settings import Settings, files_of, unknown_names
-from ..core.mesh_io import MeshFileError, replacing
+from ..core.file_places import MeshFileError, replacing
 from .case_run import RESULT, Outcome, command_of_case
 
 DESCRIPTION = "case.json"

@@ -10,9 +10,11 @@ import numpy as np
 
 from ..batch_jobs.settings import Settings, files_of
 from ..core.errors import InternalError
-from ..core.mesh_io import READABLE, MeshFileError, read_counts, read_edges, read_mesh, read_polylines, read_rows
+from ..core.file_places import MeshFileError
+from ..core.mesh_io import READABLE, read_mesh
 from ..core.part_files import read_part, write_polygons
 from ..core.strokes import kind_of_name
+from ..core.wish_files import read_counts, read_edges, read_polylines, read_rows
 
 MESH = "mesh.off"  # of the formats the one that keeps wrong indices as they are
 ORIGINAL = "original"  # the mesh file as it is, with its own suffix

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..batch_jobs.settings import KINDS, SettingError, canonical
-from ..core.mesh_io import MeshFileError, check_apart, check_place
+from ..core.file_places import MeshFileError, check_apart, check_place
 from . import exit_codes
 from .messages import say
 from .setting_arguments import UsageProblem, add_settings

@@ -7,7 +7,9 @@ import json
 from typing import Any
 
 from ..core.check import check
-from ..core.mesh_io import check_apart, check_place, read_line_elements, read_mesh, replacing
+from ..core.file_places import check_apart, check_place, replacing
+from ..core.mesh_io import read_mesh
+from ..core.wish_files import read_line_elements
 from . import exit_codes
 from .messages import describe_defect, verdict_on
 

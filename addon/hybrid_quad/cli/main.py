@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.mesh_io import MeshFileError
+from ..core.file_places import MeshFileError
 from . import batch_command, case_command, check_command, exit_codes, remesh_command
 from .messages import describe_elements, say
 from .setting_arguments import UsageProblem

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..core import mesh_io, report
+from ..core import file_places, mesh_io, report, wish_files
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.mesh_arrays import FloatArray
 from ..core.options import RemeshOptions
@@ -84,22 +84,22 @@ def run(arguments: argparse.Namespace) -> int:
 def _check_files(arguments: argparse.Namespace) -> None:
     """Raises MeshFileError where a file cannot be written, or not without loss of another that was named. OUT may be IN."""
     named = [getattr(arguments, name) for name in FILES_READ]
-    mesh_io.check_apart(arguments.output, named)
+    file_places.check_apart(arguments.output, named)
     named += [arguments.input, arguments.output]
     for path in filter(None, (arguments.report, arguments.picture)):
-        mesh_io.check_place(path)
-        mesh_io.check_apart(path, named)
+        file_places.check_place(path)
+        file_places.check_apart(path, named)
         named.append(path)
     if arguments.dump_stages and Path(arguments.dump_stages).exists() and not Path(arguments.dump_stages).is_dir():
-        raise mesh_io.MeshFileError(f"{arguments.dump_stages}: is no folder")
+        raise file_places.MeshFileError(f"{arguments.dump_stages}: is no folder")
 
 
 def _remesh(
     arguments: argparse.Namespace, options: RemeshOptions, started: float
 ) -> tuple[RemeshResult, PartRemesh | None]:
     vertices, polygons = mesh_io.read_mesh(arguments.input)
-    sharp_edges = None if arguments.features is None else mesh_io.read_edges(arguments.features)
-    curve_counts = None if arguments.curve_counts is None else mesh_io.read_counts(arguments.curve_counts)
+    sharp_edges = None if arguments.features is None else wish_files.read_edges(arguments.features)
+    curve_counts = None if arguments.curve_counts is None else wish_files.read_counts(arguments.curve_counts)
     density = _numbers(arguments.density, 1, len(vertices))
     frames = _numbers(arguments.frames, 6, len(vertices))
     solve, asked = part_solver(arguments, vertices, polygons, options) or (remesh_with_options, options)
@@ -128,7 +128,7 @@ def _remesh(
 def _strokes(arguments: argparse.Namespace) -> list[Stroke]:
     """The lines of a file, each of the kind that its object's name or the option says."""
     lines = [
-        (kind_of_name(name, arguments.guide_kind), line) for name, line in mesh_io.read_polylines(arguments.guides)
+        (kind_of_name(name, arguments.guide_kind), line) for name, line in wish_files.read_polylines(arguments.guides)
     ]
     return [
         Stroke(line, arguments.guide_strength, kind)
@@ -141,9 +141,9 @@ def _numbers(path: str | None, width: int, count: int) -> FloatArray | None:
     """`width` numbers for each of `count` vertices, from a file."""
     if path is None:
         return None
-    rows = mesh_io.read_rows(path, width)
+    rows = wish_files.read_rows(path, width)
     if len(rows) != count:
-        raise mesh_io.MeshFileError(f"{path}: has {len(rows)} lines of numbers for {count} vertices")
+        raise file_places.MeshFileError(f"{path}: has {len(rows)} lines of numbers for {count} vertices")
     return rows
 
 
@@ -158,7 +158,7 @@ def _write(arguments: argparse.Namespace, result: RemeshResult, mesh: PartRemesh
         held = {}  # not in the main thread, which alone is interrupted
     try:
         if arguments.report:
-            with mesh_io.replacing(arguments.report) as file:
+            with file_places.replacing(arguments.report) as file:
                 file.write(report.as_text(result.report).encode())
         if mesh is None:
             mesh_io.write_mesh(arguments.output, result.vertices, result.quads)
@@ -174,7 +174,7 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         return
     if isinstance(error, InputError):
         status = "input_error"
-    elif isinstance(error, (mesh_io.MeshFileError, OSError)):
+    elif isinstance(error, (file_places.MeshFileError, OSError)):
         status = "unreadable_file"
     elif isinstance(error, MemoryError):
         status = "memory_limit"
@@ -182,5 +182,5 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         status = getattr(error, "code", "cancelled")
     else:
         status = "internal_error"
-    with mesh_io.replacing(arguments.report) as file:
+    with file_places.replacing(arguments.report) as file:
         file.write(report.as_text(report.failed(status, error, options, __version__)).encode())

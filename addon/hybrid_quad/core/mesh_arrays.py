@@ -154,3 +154,13 @@ def _as_indices(values: npt.ArrayLike, name: str) -> IntArray:
     if array.min() < limits.min or array.max() > limits.max:
         raise InputError("index_out_of_range", f"{name} hold an index that no mesh of this size has.")
     return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def clipped_to_int32(values: Sequence[int]) -> IntArray:
+    """(n,) `values`, those beyond the range of int32, and so of any mesh, at its ends."""
+    limits = np.iinfo(np.int32)
+    low, high = int(limits.min), int(limits.max)
+    try:
+        return np.clip(np.array(values, dtype=np.int64), low, high).astype(np.int32)
+    except OverflowError:
+        return np.array([min(max(value, low), high) for value in values], np.int32)

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from .file_places import MeshFileError, read_text, replacing
 from .mesh_arrays import FloatArray, Polygons
-from .mesh_io import MeshFileError, check_writable, read_text, replacing
+from .mesh_io import check_writable
 from .part_sheet import Indices
 
 

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .file_places import replacing
 from .mesh_arrays import FloatArray, IntArray
-from .mesh_io import replacing
 from .png_file import Pixels, png_of
 
 WIDTH, HEIGHT = 360, 270

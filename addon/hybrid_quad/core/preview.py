@@ -123,9 +123,12 @@ def preview(
     InputError, Cancelled, InternalError, ValueError, TypeError
         As :func:`hybrid_quad.remesh` does.
     """
+    options = RemeshOptions() if options is None else options
+    if not isinstance(options, RemeshOptions):
+        raise TypeError(f"options must be RemeshOptions, not {type(options).__name__}")
     asked, center = native_arguments(
         *vertices_and_faces(vertices, faces),
-        RemeshOptions() if options is None else options,
+        options,
         sharp_edges=sharp_edges,
         curve_counts=curve_counts,
         guides=guides,
