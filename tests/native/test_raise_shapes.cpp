@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "hybrid_quad/improve/flaw_memory.h"
+#include "hybrid_quad/improve/shape_descent.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/workpiece.h"
 #include "hybrid_quad/quality/quality.h"
@@ -109,7 +109,7 @@ struct Cross {
 
 bool any_folded(const QuadMesh& mesh) {
   const auto& p = mesh.positions;
-  return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}); });
+  return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return scaled_jacobian(p[v[0]], p[v[1]], p[v[2]], p[v[3]]) <= kFolded; });
 }
 
 TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
