@@ -40,12 +40,12 @@ bool Shapes::are_better_than(const Shapes& other) const {
   return folded < other.folded || lack < other.lack - kBetter;
 }
 
-Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure* measure) {
+Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure& measure) {
   constexpr double kFair = 0.3;
   Shapes now;
   for (const int q : quads) {
     const double shape = shape_of(mesh, q);
-    if (measure) now.flawed += measure->is_flawed(q);
+    now.flawed += measure.is_flawed(q);
     now.folded += shape <= kFolded;
     now.worst = std::min(now.worst, shape);
     now.lack += std::max(0.0, kFair - shape);
@@ -61,11 +61,11 @@ ShapeDescent::ShapeDescent(Workpiece& piece, const FlawMeasure& measure, const s
 }
 
 bool ShapeDescent::run(const DescentPlan& plan) {
-  const Shapes before = shapes_of(piece_.mesh, quads_, &measure_);
+  const Shapes before = shapes_of(piece_.mesh, quads_, measure_);
   std::vector<VertexPlace> old;
   for (const int v : vertices_) old.push_back(piece_.place_of(v));
   descend(plan);
-  if (shapes_of(piece_.mesh, quads_, &measure_).are_better_than(before)) return true;
+  if (shapes_of(piece_.mesh, quads_, measure_).are_better_than(before)) return true;
   for (std::size_t i = 0; i < vertices_.size(); ++i) piece_.put(vertices_[i], old[i]);
   return false;
 }
@@ -77,7 +77,7 @@ void ShapeDescent::descend(const DescentPlan& plan) {
     std::vector<double> steps(vertices_.size(), kFirstStep);
     for (int sweep = 0; sweep < plan.sweeps; ++sweep)
       for (std::size_t i = 0; i < vertices_.size(); ++i)
-        if (steps[i] > kLeastStep && !move(vertices_[i], steps[i], plan)) steps[i] *= 0.5;
+        if (steps[i] > kLeastStep && !move(vertices_[i], steps[i])) steps[i] *= 0.5;
   }
 }
 
@@ -107,7 +107,7 @@ int ShapeDescent::flawed_at(int v) const {
 
 /// To the best place that leaves no more quads at v flawed: a sine by the quad's own normal does not tell that it is turned over.
 /// \returns whether one is better than where v is
-bool ShapeDescent::move(int v, double step, const DescentPlan& plan) {
+bool ShapeDescent::move(int v, double step) {
   const double now = energy(v);
   const VertexPlace here = piece_.place_of(v);
   std::vector<std::pair<double, VertexPlace>> better;
@@ -117,11 +117,11 @@ bool ShapeDescent::move(int v, double step, const DescentPlan& plan) {
   }
   piece_.put(v, here);
   if (better.empty()) return false;
-  const int flawed = plan.heeds_flaws ? flawed_at(v) : 0;
+  const int flawed = flawed_at(v);
   std::stable_sort(better.begin(), better.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   for (const auto& [there, place] : better) {
     piece_.put(v, place);
-    if (!plan.heeds_flaws || flawed_at(v) <= flawed) return true;
+    if (flawed_at(v) <= flawed) return true;
   }
   piece_.put(v, here);
   return false;

@@ -28,14 +28,12 @@ struct Shapes {
   bool are_better_than(const Shapes& other) const;
 };
 
-/// \param measure  null: none counts as flawed
-Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure* measure);
+Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure& measure);
 
 /// How to go down. A number of sweeps over the vertices with each softness, in turn.
 struct DescentPlan {
   std::array<double, 4> softness{0.3, 0.15, 0.07, 0.03};
   int sweeps = 12;
-  bool heeds_flaws = true;  ///< no move may leave more quads flawed: costs most of the time
 };
 
 /// Moves vertices downhill on the sum over the corners of their quads of exp(-sine / softness), each in turn to the best of some
@@ -51,7 +49,7 @@ class ShapeDescent {
   bool run(const DescentPlan& plan);
 
  private:
-  bool move(int v, double step, const DescentPlan& plan);
+  bool move(int v, double step);
   double energy(int v) const;
   int flawed_at(int v) const;
   std::vector<VertexPlace> places_at(int v, double step) const;

@@ -98,7 +98,7 @@ class FoldedSplitter {
     const int own = static_cast<int>(std::lower_bound(patch.quads.begin(), patch.quads.end(), q) - patch.quads.begin());
     std::vector<Trial> trials = trials_at(own, patch.mesh);
     std::stable_sort(trials.begin(), trials.end(), [](const Trial& x, const Trial& y) {
-      return std::make_tuple(x.shapes.folded, x.shapes.lack) < std::make_tuple(y.shapes.folded, y.shapes.lack);
+      return std::make_tuple(x.shapes.flawed, x.shapes.folded, x.shapes.lack) < std::make_tuple(y.shapes.flawed, y.shapes.folded, y.shapes.lack);
     });
     if (trials.size() > kThorough) trials.resize(kThorough);
     const Shapes before = shapes_of_patch(patch.mesh);
@@ -116,7 +116,7 @@ class FoldedSplitter {
   }
 
   std::vector<Trial> trials_at(int q, const QuadMesh& mesh) {
-    constexpr DescentPlan kHaste{{0.3, 0.15, 0.07, 0.03}, 4, false};
+    constexpr DescentPlan kHaste{{0.3, 0.15, 0.07, 0.03}, 4};
     Workpiece piece = located(mesh);
     const SideSplitter splitter(mesh, index_, piece.region);
     const std::vector<int> ring = with_ring(piece.mesh, {mesh.quads[q].begin(), mesh.quads[q].end()});
@@ -147,13 +147,13 @@ class FoldedSplitter {
     const FlawMeasure measure(piece, whole_, options_.agreement);
     ShapeDescent(piece, measure, trial.moving).descend(plan);
     trial.mesh = piece.mesh.extract(piece.face);
-    trial.shapes = shapes_of(piece.mesh, all_quads(trial.mesh), plan.heeds_flaws ? &measure : nullptr);
+    trial.shapes = shapes_of(piece.mesh, all_quads(trial.mesh), measure);
   }
 
   Shapes shapes_of_patch(const QuadMesh& mesh) const {
     const Workpiece piece = located(mesh);
     const FlawMeasure measure(piece, whole_, options_.agreement);
-    return shapes_of(piece.mesh, all_quads(mesh), &measure);
+    return shapes_of(piece.mesh, all_quads(mesh), measure);
   }
 
   static constexpr int kLeastTries = 8, kQuadsATry = 250;
