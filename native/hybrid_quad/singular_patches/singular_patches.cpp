@@ -1,6 +1,7 @@
 #include "hybrid_quad/singular_patches/singular_patches.h"
 
 #include "hybrid_quad/singular_patches/patch_growth.h"
+#include "hybrid_quad/singular_patches/patch_room.h"
 #include "hybrid_quad/singular_patches/patch_triangles.h"
 
 namespace hybrid_quad {
@@ -8,24 +9,6 @@ namespace hybrid_quad {
 namespace {
 
 double area_of(const PatchSurface& patch) { return patch.mesh.total_area(); }
-
-double area_of_piece(const GridOverlay& overlay, int piece) {
-  const auto position = [&](int k) -> const Vector3& { return overlay.vertices[overlay.origin[k]].position; };
-  const int begin = overlay.piece_begin[piece], end = overlay.piece_begin[piece + 1];
-  Vector3 sum = Vector3::Zero();
-  for (int k = begin + 1; k + 1 < end; ++k) sum += 0.5 * (position(k) - position(begin)).cross(position(k + 1) - position(begin));
-  return sum.norm();
-}
-
-/// Quads of the lengths asked for that fit on a patch: these may differ several times over from one end of it to the other.
-double quads_by_area(const WorkingSurface& surface, const GridOverlay& overlay, const std::vector<int>& pieces) {
-  double sum = 0;
-  for (const int piece : pieces) {
-    const double length = surface.target_length[overlay.piece_face[piece]];
-    sum += area_of_piece(overlay, piece) / (length * length);
-  }
-  return sum;
-}
 
 /// A patch has about as many quads as fit its area and its border. Many more come from a function that oscillates.
 bool is_oversized(const PatchQuads& quads, double by_area) {
