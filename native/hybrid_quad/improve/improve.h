@@ -22,7 +22,8 @@ struct ImproveOptions {
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads)
+  Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads), so that there is no doubt
+  Agreement least_agreement;  ///< what has to, or the quad is flawed beyond doubt: no shape is worth that
 };
 
 struct ImproveReport {

@@ -20,7 +20,7 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   if (poor.empty() || !(piece.h > 0)) return 0;
   std::sort(poor.begin(), poor.end());
   piece.locate_all();
-  const FlawMeasure measure(piece, whole ? *whole : index, options.agreement);
+  const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
   int raised = 0;
   for (const auto& [shape, q] : poor) {

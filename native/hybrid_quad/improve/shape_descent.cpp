@@ -36,7 +36,7 @@ std::vector<int> with_ring(const EditMesh& mesh, const std::vector<int>& vertice
 
 bool Shapes::are_better_than(const Shapes& other) const {
   constexpr double kBetter = 0.01;
-  if (flawed > other.flawed || folded > other.folded || worst < other.worst) return false;
+  if (flaws > other.flaws || folded > other.folded || worst < other.worst) return false;
   return folded < other.folded || lack < other.lack - kBetter;
 }
 
@@ -45,7 +45,7 @@ Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const Flaw
   Shapes now;
   for (const int q : quads) {
     const double shape = shape_of(mesh, q);
-    now.flawed += measure.is_flawed(q);
+    now.flaws += measure.flaws(q);
     now.folded += shape <= kFolded;
     now.worst = std::min(now.worst, shape);
     now.lack += std::max(0.0, kFair - shape);
@@ -99,13 +99,13 @@ double ShapeDescent::energy(int v) const {
   return sum;
 }
 
-int ShapeDescent::flawed_at(int v) const {
-  int flawed = 0;
-  for (const int q : piece_.mesh.quads_at(v)) flawed += measure_.is_flawed(q);
-  return flawed;
+int ShapeDescent::flaws_at(int v) const {
+  int flaws = 0;
+  for (const int q : piece_.mesh.quads_at(v)) flaws += measure_.flaws(q);
+  return flaws;
 }
 
-/// To the best place that leaves no more quads at v flawed: a sine by the quad's own normal does not tell that it is turned over.
+/// To the best place that leaves no more flaws at v: a sine by the quad's own normal does not tell that it is turned over.
 /// \returns whether one is better than where v is
 bool ShapeDescent::move(int v, double step) {
   const double now = energy(v);
@@ -117,11 +117,11 @@ bool ShapeDescent::move(int v, double step) {
   }
   piece_.put(v, here);
   if (better.empty()) return false;
-  const int flawed = flawed_at(v);
+  const int flaws = flaws_at(v);
   std::stable_sort(better.begin(), better.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   for (const auto& [there, place] : better) {
     piece_.put(v, place);
-    if (flawed_at(v) <= flawed) return true;
+    if (flaws_at(v) <= flaws) return true;
   }
   piece_.put(v, here);
   return false;

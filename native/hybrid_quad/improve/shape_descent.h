@@ -22,7 +22,8 @@ constexpr double kFolded = 0.01;
 
 /// Of some quads together.
 struct Shapes {
-  int flawed = 0, folded = 0;  ///< quads; folded: kFolded
+  int flaws = 0;   ///< FlawMeasure::flaws, summed
+  int folded = 0;  ///< quads, kFolded
   double worst = 1, lack = 0;  ///< the least scaled Jacobian; what all lack to a fair one, summed
 
   bool are_better_than(const Shapes& other) const;
@@ -51,7 +52,7 @@ class ShapeDescent {
  private:
   bool move(int v, double step);
   double energy(int v) const;
-  int flawed_at(int v) const;
+  int flaws_at(int v) const;
   std::vector<VertexPlace> places_at(int v, double step) const;
 
   Workpiece& piece_;
