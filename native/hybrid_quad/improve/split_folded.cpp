@@ -128,7 +128,9 @@ class FoldedSplitter {
   }
 
   static bool is_worth_it(const Shapes& now, const Shapes& before) {
-    return now.flaws <= before.flaws && now.folded < before.folded && now.worst >= before.worst;
+    constexpr double kMuch = 0.1;
+    if (now.flaws > before.flaws || now.folded > before.folded || now.worst < before.worst) return false;
+    return now.folded < before.folded || now.worst >= before.worst + kMuch;
   }
 
   /// The first of the likeliest that is worth it, else the best of them that has no more flaws.
