@@ -34,6 +34,7 @@ class FoldedSplitter {
   int run() {
     int splits = 0;
     is_futile_.assign(quads_.quads.size(), 0);
+    if (worst_folded() < 0) return 0;
     find_quads_at();
     for (int q = worst_folded(); q >= 0 && tries_left_ > 0; q = worst_folded()) {
       context_.checkpoint();
@@ -218,7 +219,7 @@ class FoldedSplitter {
   const RunContext& context_;
   double edge_;
   std::size_t most_quads_;
-  int tries_left_;
+  int tries_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
   std::vector<std::vector<int>> quads_at_;
   std::vector<char> is_futile_;  ///< #Q
 };
