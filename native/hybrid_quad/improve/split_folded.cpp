@@ -29,18 +29,19 @@ class FoldedSplitter {
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), options_(options), context_(context),
         edge_(options.target_length > 0 ? options.target_length : mean_edge_length(quads)),
         most_quads_(quads.quads.size() + std::max(kFewMore, quads.quads.size() / kMostMore)),
-        tries_left_(kLeastTries + static_cast<int>(quads.quads.size()) / kQuadsATry) {}
+        failures_left_(kLeastFailures + static_cast<int>(quads.quads.size()) / kQuadsAFailure) {}
 
   int run() {
     int splits = 0;
     is_futile_.assign(quads_.quads.size(), 0);
     if (worst_folded() < 0) return 0;
     find_quads_at();
-    for (int q = worst_folded(); q >= 0 && tries_left_ > 0; q = worst_folded()) {
+    for (int q = worst_folded(); q >= 0 && failures_left_ > 0; q = worst_folded()) {
       context_.checkpoint();
       is_futile_[q] = 1;
-      --tries_left_;
-      splits += split(q);
+      const int split_sides = split(q);
+      if (split_sides == 0) --failures_left_;
+      splits += split_sides;
     }
     return splits;
   }
@@ -117,6 +118,7 @@ class FoldedSplitter {
       const int folded = splits == 1 ? own : worst_inside(*trial);
       if (folded < 0 || !(trial = best_split(*trial, folded, before))) return 0;
       if (quads_.quads.size() + trial->mesh.quads.size() - patch.quads.size() > most_quads_) return 0;
+      if (trial->shapes.folded > before.folded) return 0;  // too many for another split
       if (!is_worth_it(trial->shapes, before)) continue;
       patch.mesh = std::move(trial->mesh);
       put_back(patch, quads_);
@@ -209,7 +211,7 @@ class FoldedSplitter {
 
   // Folded quads are valid: the number that was asked for matters more than many of them.
   static constexpr std::size_t kMostMore = 50, kFewMore = 8;  // a fiftieth of the quads, or a few
-  static constexpr int kLeastTries = 8, kQuadsATry = 250;
+  static constexpr int kLeastFailures = 4, kQuadsAFailure = 1000;
   QuadMesh& quads_;
   const TriangleMesh& input_;
   const FeatureGraph& features_;
@@ -219,7 +221,7 @@ class FoldedSplitter {
   const RunContext& context_;
   double edge_;
   std::size_t most_quads_;
-  int tries_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
+  int failures_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
   std::vector<std::vector<int>> quads_at_;
   std::vector<char> is_futile_;  ///< #Q
 };

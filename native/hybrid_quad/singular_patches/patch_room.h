@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "hybrid_quad/regular_quads/grid_overlay.h"
+#include "hybrid_quad/regular_quads/regular_quads.h"
 #include "hybrid_quad/working_surface/working_surface.h"
 
 namespace hybrid_quad {
