@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "hybrid_quad/improve/flaw_memory.h"
+#include "hybrid_quad/improve/shape_descent.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/workpiece.h"
 #include "hybrid_quad/quality/quality.h"
@@ -109,7 +109,7 @@ struct Cross {
 
 bool any_folded(const QuadMesh& mesh) {
   const auto& p = mesh.positions;
-  return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}); });
+  return std::any_of(mesh.quads.begin(), mesh.quads.end(), [&](const auto& v) { return scaled_jacobian(p[v[0]], p[v[1]], p[v[2]], p[v[3]]) <= kFolded; });
 }
 
 TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
@@ -126,6 +126,40 @@ TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
   EXPECT_TRUE(violations_of(cross.quads).empty());
   EXPECT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
   EXPECT_EQ(call(split_folded_quads), 0);
+}
+
+TEST(SplitFolded, WhatIsFarStaysAndNothingIsSplitWhereNoQuadIsFolded) {
+  Square square;
+  const QuadMesh before = square.quads;
+  const auto split = [&] {
+    return split_folded_quads(square.quads, square.input, square.features, square.index, ImproveOptions{}, RunContext{});
+  };
+  EXPECT_EQ(split(), 0);
+  EXPECT_EQ(square.quads.positions, before.positions);
+  // A corner in a place where it makes a quad concave: no place helps.
+  square.quads.positions[id(6, 6)] = {6.7, 6.7, 0};
+  square.quads.kind[id(6, 6)] = VertexKind::kCorner;
+  square.quads.anchor[id(6, 6)] = -1;
+  for (const int v : {id(5, 5), id(6, 5), id(7, 5), id(7, 6), id(7, 7), id(6, 7), id(5, 7), id(5, 6)}) square.quads.kind[v] = VertexKind::kCorner;
+  ASSERT_TRUE(any_folded(square.quads));
+  EXPECT_GT(split(), 0);
+  EXPECT_FALSE(any_folded(square.quads));
+  EXPECT_TRUE(violations_of(square.quads).empty());
+  EXPECT_TRUE(flawed_quads(square.quads, square.index, {}).empty());
+  EXPECT_LE(square.quads.quads.size(), before.quads.size() + 8);
+  for (int j = 0; j <= kSide; ++j)
+    for (int i = 0; i <= kSide; ++i)
+      if (std::max(std::abs(i - 6), std::abs(j - 6)) > 3) { EXPECT_EQ(square.quads.positions[id(i, j)], before.positions[id(i, j)]); }
+}
+
+TEST(SplitFolded, NoQuadIsTurnedOver) {
+  for (const int c : {8, 9, 10, 11}) {
+    Cross cross(VertexKind::kCorner, c);
+    const std::size_t flawed = flawed_quads(cross.quads, *cross.index, {}).size();
+    split_folded_quads(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{});
+    EXPECT_LE(flawed_quads(cross.quads, *cross.index, {}).size(), flawed) << c;
+    EXPECT_FALSE(any_folded(cross.quads)) << c;
+  }
 }
 
 TEST(RaiseShapes, VerticesSlideAlongTheirCurves) {

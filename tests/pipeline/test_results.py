@@ -30,6 +30,7 @@ REPORT_FIELDS = {
     *("status", "quads", "vertices", "irregular_vertices", "field_singularities", "dislocations"),
     *("feature_singularities", "field_solutions"),
     *("singular_area_fraction", "patches", "scaled_jacobian", "hausdorff_percent", "feature_hausdorff_percent"),
+    "sharp_angle_used",
     *("stages", "warnings", "seed", "version", "options"),
 }
 
@@ -88,6 +89,19 @@ def test_sharp_edges_and_corners_are_kept():
                 line = np.empty((len(t), 3))
                 line[:, axis], line[:, (axis + 1) % 3], line[:, (axis + 2) % 3] = t, a, b
                 assert distance_to_edges(line, result).max() < 1e-9
+
+
+def test_the_report_says_that_edges_had_to_be_sharper_than_asked():
+    """On a rough surface no angle below its roughest edges tells anything apart; a box has none to raise it for."""
+    vertices, faces = surfaces.sphere(24)
+    rough = vertices * (1 + 0.006 * np.random.default_rng(1).standard_normal(len(vertices)))[:, None]
+    report = hybrid_quad.remesh(rough, faces, quads=600, sharp_angle=20).report
+    assert report["sharp_angle_used"] > 20
+    assert any("not 20, to be kept" in warning for warning in report["warnings"])
+    box = hybrid_quad.remesh(*SURFACES["box"], quads=600, sharp_angle=20).report
+    assert box["sharp_angle_used"] == 20
+    assert not any("to be kept" in warning for warning in box["warnings"])
+    assert hybrid_quad.remesh(*SURFACES["box"], quads=600, sharp_angle=None).report["sharp_angle_used"] is None
 
 
 def test_the_boundary_is_kept():

@@ -38,6 +38,7 @@ class FeatureDetector {
   void weigh_edges(const RunContext& context);
   void drop_noise();
   std::vector<char> result() const;
+  double limit() const { return limit_; }  ///< degrees above which edges were taken by angle; 0: none were
 
  private:
   void drop_short_sets();
@@ -73,6 +74,7 @@ class FeatureDetector {
   const TriangleMesh& mesh_;
   const FeatureOptions& options_;
   std::vector<char> marked_, by_angle_;
+  double limit_ = 0;
   std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
   double noise_share_ = 0;      ///< of the length of all edges by angle
   std::vector<Vector3> normal_;
@@ -152,9 +154,9 @@ void FeatureDetector::mark_by_angle(const RunContext& context) {
     halfedges.push_back(h);
     edges.push_back({angle(h) / kDegree, length(h)});
   }
-  const double limit = options_.minimum_length > 0 ? parting_angle(edges, options_.sharp_angle) : options_.sharp_angle;
+  limit_ = options_.minimum_length > 0 ? parting_angle(edges, options_.sharp_angle) : options_.sharp_angle;
   for (std::size_t i = 0; i < edges.size(); ++i)
-    if (edges[i].angle > limit) set(by_angle_, halfedges[i], 1);
+    if (edges[i].angle > limit_) set(by_angle_, halfedges[i], 1);
 }
 
 int FeatureDetector::feature_degree(int v) const {
@@ -388,7 +390,9 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
     detector.drop_noise();
   }
   context.checkpoint(0.7);
-  return trace_features(mesh, detector.result(), options.corner_angle, options.corners);
+  FeatureGraph features = trace_features(mesh, detector.result(), options.corner_angle, options.corners);
+  features.sharp_angle = detector.limit();
+  return features;
 }
 
 }  // namespace hybrid_quad

@@ -22,6 +22,7 @@ struct FeatureGraph {
   std::vector<char> is_corner;      ///< #V: node of degree != 2 (dangling ends too), or the curve turns by more than 80 degrees
   std::vector<char> on_feature;     ///< #V
   std::vector<int> face_region;     ///< #F: connected region of faces between feature curves
+  double sharp_angle = 0;           ///< of detect_features: degrees above which edges by angle were looked at; 0: none were
 
   bool is_feature(int h) const { return halfedge_curve[h] >= 0; }
 };

@@ -15,19 +15,26 @@ namespace hybrid_quad {
 class FlawMeasure {
  public:
   /// \param whole, agreement  the surface to measure by, and the other parameter of flawed_quads
-  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, const Agreement& agreement)
-      : piece_(piece), whole_(whole), agreement_(agreement) {}
+  /// \param least  what is flawed beyond doubt, as flaws() counts it; null: all that is flawed is
+  FlawMeasure(const Workpiece& piece, const SurfaceIndex& whole, const Agreement& agreement, const Agreement* least = nullptr)
+      : piece_(piece), whole_(whole), agreement_(agreement), least_(least) {}
 
-  bool is_flawed(int q) const {
+  bool is_flawed(int q) const { return flaws(q) > 0; }
+
+  /// 0, 1 for a quad that may be flawed, or more than many of these for one that is beyond doubt.
+  int flaws(int q) const {
+    constexpr int kBeyondDoubt = 1000;
     constexpr double kLeastArea = 1e-9;
     const std::array<Vector3, 4> p = corners(q);
     if (q >= static_cast<int>(known_.size())) known_.resize(q + 1);
     std::array<Known, 2>& known = known_[q];
-    if (known[0].corners == p) return known[0].is_flawed;
+    if (known[0].corners == p) return known[0].flaws;
     std::swap(known[0], known[1]);
-    if (known[0].corners == p) return known[0].is_flawed;
-    known[0] = {p, hybrid_quad::is_flawed(p, kLeastArea * piece_.h * piece_.h, whole_, agreement_)};
-    return known[0].is_flawed;
+    if (known[0].corners == p) return known[0].flaws;
+    const double least_area = kLeastArea * piece_.h * piece_.h;
+    known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_)};
+    if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_))) known[0].flaws = kBeyondDoubt;
+    return known[0].flaws;
   }
 
   /// Learns of all quads, on all threads, which of them are flawed.
@@ -69,12 +76,13 @@ class FlawMeasure {
   /// Of a quad with its corners there: many trials in turn begin, and when they fail end, at the same quads.
   struct Known {
     std::array<Vector3, 4> corners{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-    bool is_flawed = true;  ///< so it is where all corners are at the origin
+    int flaws = 1;  ///< so it is where all corners are at the origin
   };
 
   const Workpiece& piece_;
   const SurfaceIndex& whole_;
   Agreement agreement_;
+  const Agreement* least_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
 };
 

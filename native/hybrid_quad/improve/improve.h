@@ -22,7 +22,8 @@ struct ImproveOptions {
   const GuideMap* guides = nullptr;  ///< on the input: directions that edges keep to
   const RingPulls* rings = nullptr;  ///< edges that lines are to cross in the middle; only where connectivity stays
   double target_length = 0;        ///< mean quad edge, 0 = measured
-  Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads)
+  Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads), so that there is no doubt
+  Agreement least_agreement;  ///< what has to, or the quad is flawed beyond doubt: no shape is worth that
 };
 
 struct ImproveReport {
@@ -84,9 +85,10 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
                        const SurfaceIndex* whole = nullptr);
 
-/// The same against quads with a scaled Jacobian of zero or less (or hardly more), flawed or not: mostly quads between corners and
-/// curves, whose places are given. No more are flawed afterwards, by the agreement that improving asks for, and there are hardly more
-/// quads.
+/// Against quads with a scaled Jacobian of zero or less (or hardly more), flawed or not: mostly quads between corners and curves, whose
+/// places are given. A side is split in three, or two sides one after the other, and the vertices of the quad, of those around it and
+/// within these find new places as in raise_shapes, where that leaves fewer such quads or a much better worst one. The rest of the mesh
+/// stays. No more are flawed or in doubt afterwards, and there are hardly more quads: a fiftieth, or eight.
 /// \param whole  as for improve_quads
 /// \returns sides split
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,

@@ -37,6 +37,20 @@ bool is_sound(const SideSplit& split, bool on_boundary) {
   return std::min(here[0] + there[1], here[1] + there[0]) >= kLeastInside;
 }
 
+std::vector<SideSplit> sound_splits(int quad, int side, bool on_boundary) {
+  constexpr std::array<HexagonFill, 5> kFills{HexagonFill::kFirstEdge, HexagonFill::kSecondEdge, HexagonFill::kStarAtFirst,
+                                              HexagonFill::kStarAtSecond, HexagonFill::kInset};
+  std::vector<SideSplit> splits;
+  SideSplit split{quad, side};
+  for (const HexagonFill fill : kFills)
+    for (const HexagonFill fill_across : kFills) {
+      split.fill = fill;
+      split.fill_across = fill_across;
+      if (is_sound(split, on_boundary) && (!on_boundary || fill_across == kFills.front())) splits.push_back(split);
+    }
+  return splits;
+}
+
 Vector3 point_on_side(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, int a, int b,
                       double part) {
   const Vector3 &from = mesh.positions[a], &to = mesh.positions[b];
@@ -47,6 +61,17 @@ Vector3 point_on_side(const QuadMesh& mesh, const Workpiece& piece, const QuadMe
   double length = arc_of(edge->b, curve.length()) - begin;
   if (curve.closed() && length <= 0) length += curve.length();
   return curve.at(begin + (edge->a == a ? part : 1 - part) * length);
+}
+
+std::array<Vector3, 4> path_of(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, const SideSplit& split) {
+  const int a = mesh.quads[split.quad][split.side], b = mesh.quads[split.quad][(split.side + 1) & 3];
+  const auto at = [&](double part) { return point_on_side(mesh, piece, edge, a, b, part); };
+  return {mesh.positions[a], at(split.first), at(split.second), mesh.positions[b]};
+}
+
+bool may_split(const QuadMesh::FeatureEdge* edge, const FeatureGraph& features) {
+  if (edge == nullptr) return true;
+  return edge->curve >= 0 && edge->curve < static_cast<int>(features.curves.size()) && features.curves[edge->curve].asked_count == 0;
 }
 
 SideSplitter::SideSplitter(const QuadMesh& mesh, const SurfaceIndex& surface, std::vector<int> region)

@@ -25,9 +25,19 @@ struct SideSplit {
 /// Whether both new vertices of the side have as many quads as a vertex there needs.
 bool is_sound(const SideSplit& split, bool on_boundary);
 
+/// All ways to fill both sides of a quad's side, its new vertices at thirds, that are sound.
+std::vector<SideSplit> sound_splits(int quad, int side, bool on_boundary);
+
 /// The point at some part of the way from a to b, which are the ends of a side: along the feature curve if `edge` is not null.
 /// \param piece  of `mesh`, located (Workpiece::locate_all)
 Vector3 point_on_side(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, int a, int b, double part);
+
+/// Four points along a side, its ends and the new vertices, for SideSplitter::split.
+/// \param edge  its feature edge, null: none  \param piece  as for point_on_side
+std::array<Vector3, 4> path_of(const QuadMesh& mesh, const Workpiece& piece, const QuadMesh::FeatureEdge* edge, const SideSplit& split);
+
+/// Whether the number of edges of a feature edge's curve may change: not where somebody asked for one. \param edge  null: no feature
+bool may_split(const QuadMesh::FeatureEdge* edge, const FeatureGraph& features);
 
 /// Splits sides of quads, with feature edges along curves; the rest of the mesh stays as it is, and so does its topology.
 class SideSplitter {

@@ -18,27 +18,24 @@ namespace hybrid_quad {
 
 namespace {
 
-constexpr std::array<HexagonFill, 5> kFills{HexagonFill::kFirstEdge, HexagonFill::kSecondEdge, HexagonFill::kStarAtFirst,
-                                            HexagonFill::kStarAtSecond, HexagonFill::kInset};
 constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2, 0.5}, {0.5, 0.8}}};
 
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context, bool and_folded)
+                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
-        context_(context), memory_(whole, agreement, mean_edge_length(quads), and_folded), futile_(mean_edge_length(quads)) {}
+        context_(context), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
-  /// \param most_quads  in all
-  int run(std::size_t most_quads) {
+  int run() {
     constexpr int kMostSplits = 24, kMostInVain = 3;
     constexpr std::size_t kMostFlawed = 24;
     int splits = 0, kept = 0;
     std::vector<int> flawed = memory_.flawed_of(quads_);
     QuadMesh best = quads_;
     for (std::size_t least = flawed.size(); least > 0 && least <= kMostFlawed && splits < kMostSplits && splits - kept <= kMostInVain;) {
-      if (!split_any(flawed) || quads_.quads.size() > most_quads) break;
+      if (!split_any(flawed)) break;
       ++splits;
       if (flawed.size() >= least) continue;
       least = flawed.size();
@@ -109,21 +106,19 @@ class FlawedSplitter {
   std::vector<Candidate> candidates_at(int q, const SideSplitter& splitter, const Workpiece& piece) {
     std::vector<Candidate> out;
     for (int side = 0; side < 4; ++side) {
-      if (!may_split(splitter, quads_.quads[q][side], quads_.quads[q][(side + 1) & 3])) continue;
-      const int other = splitter.across(q, side);
+      if (!may_split(edge_of(splitter, q, side), features_)) continue;
       for (const auto& [first, second] : kPlaces)
-        for (const HexagonFill fill : kFills)
-          for (const HexagonFill fill_across : kFills) {
-            const SideSplit split{q, side, first, second, fill, fill_across};
-            if (!is_sound(split, other < 0) || (other < 0 && fill_across != kFills.front())) continue;
-            out.push_back(measured(split, splitter, piece));
-          }
+        for (SideSplit split : sound_splits(q, side, splitter.across(q, side) < 0)) {
+          split.first = first;
+          split.second = second;
+          out.push_back(measured(split, splitter, piece));
+        }
     }
     return out;
   }
 
   Candidate measured(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) {
-    Candidate candidate{split, path_of(split, splitter, piece)};
+    Candidate candidate{split, path_of(quads_, piece, edge_of(splitter, split.quad, split.side), split)};
     const auto& path = candidate.path;
     const double straight = (path[3] - path[0]).norm();
     candidate.detour = straight > 0 ? ((path[1] - path[0]).norm() + (path[2] - path[1]).norm() + (path[3] - path[2]).norm()) / straight : 0;
@@ -134,18 +129,8 @@ class FlawedSplitter {
     return candidate;
   }
 
-  /// Not a side of a curve whose number of edges somebody asked for.
-  bool may_split(const SideSplitter& splitter, int a, int b) const {
-    const QuadMesh::FeatureEdge* edge = splitter.feature_edge(a, b);
-    if (edge == nullptr) return true;
-    return edge->curve >= 0 && edge->curve < static_cast<int>(features_.curves.size()) && features_.curves[edge->curve].asked_count == 0;
-  }
-
-  std::array<Vector3, 4> path_of(const SideSplit& split, const SideSplitter& splitter, const Workpiece& piece) const {
-    const int a = quads_.quads[split.quad][split.side], b = quads_.quads[split.quad][(split.side + 1) & 3];
-    const QuadMesh::FeatureEdge* edge = splitter.feature_edge(a, b);
-    const auto at = [&](double part) { return point_on_side(quads_, piece, edge, a, b, part); };
-    return {quads_.positions[a], at(split.first), at(split.second), quads_.positions[b]};
+  const QuadMesh::FeatureEdge* edge_of(const SideSplitter& splitter, int q, int side) const {
+    return splitter.feature_edge(quads_.quads[q][side], quads_.quads[q][(side + 1) & 3]);
   }
 
   void mend(QuadMesh& mesh, const std::vector<int>& flawed) {
@@ -177,27 +162,7 @@ class FlawedSplitter {
 
 int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
-  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context, false)
-      .run(std::numeric_limits<std::size_t>::max());
-}
-
-int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
-  // Folded quads are valid: the number that was asked for matters more than many of them.
-  constexpr std::size_t kMostMore = 50, kFewMore = 8;  // a fiftieth of the quads, or a few
-  const bool any = std::any_of(quads.quads.begin(), quads.quads.end(), [&](const auto& v) {
-    const auto& p = quads.positions;
-    return is_folded({p[v[0]], p[v[1]], p[v[2]], p[v[3]]});
-  });
-  if (!any) return 0;
-  const SurfaceIndex& judged = whole ? *whole : index;
-  QuadMesh split = quads;
-  const std::size_t most_quads = quads.quads.size() + std::max(kFewMore, quads.quads.size() / kMostMore);
-  const int splits = FlawedSplitter(split, input, features, index, judged, options.agreement, options, context, true).run(most_quads);
-  const auto flawed = [&](const QuadMesh& mesh) { return flawed_quads(mesh, judged, options.agreement, context.threads).size(); };
-  if (splits == 0 || flawed(split) > flawed(quads)) return 0;
-  quads = std::move(split);
-  return splits;
+  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context).run();
 }
 
 }  // namespace hybrid_quad

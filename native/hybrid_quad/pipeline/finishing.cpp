@@ -57,6 +57,7 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   improve_.fit = options.fit;
   improve_.target_length = std::sqrt(plan.mesh.total_area() / plan.quads);
   improve_.agreement = most_that_squares_pass(plan.mesh, whole, improve_.target_length);
+  improve_.least_agreement = least_agreement(whole);
   improve_.guides = &guides_;
   if (wishes.most_stretch > 1) improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;

@@ -176,6 +176,7 @@ GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, c
     append(result, quads, parts[i], input_vertices_of(run, i, report.input_vertices), run.images, guided);
     report.fewest_quads += run.images * fewest_quads(plan.mesh);
     report.features_given_way += run.images * parts[i].features_given_way;
+    report.sharp_angle_used = std::max(report.sharp_angle_used, plan.sharp_angle);
     singular_area += parts[i].singular_area;
     combinatorial_area += parts[i].combinatorial_area;
   }
@@ -212,6 +213,21 @@ std::string count_warning(const RemeshReport& report, double wanted) {
   return numbers + ": features or small parts need another number";
 }
 
+/// Why some edges above the sharp angle are not kept; empty where none had to be sharper than asked.
+std::string sharp_angle_warning(const RunPlan& run) {
+  const double asked = run.options.sharp_angle;
+  std::vector<double> raised;
+  for (const ComponentPlan& plan : run.plans)
+    if (plan.sharp_angle > asked) raised.push_back(plan.sharp_angle);
+  if (raised.empty()) return {};
+  const auto degrees = [](double angle) { return std::to_string(std::lround(angle)); };
+  const auto [least, most] = std::minmax_element(raised.begin(), raised.end());
+  const std::string angles = *least < *most ? degrees(*least) + " to " + degrees(*most) : degrees(*most);
+  const std::string where = raised.size() < run.plans.size() ? " on " + std::to_string(raised.size()) + " of " + std::to_string(run.plans.size()) + " parts" : "";
+  return "edges had to be sharper than " + angles + " degrees, not " + degrees(asked) + ", to be kept" + where +
+         ": up to there they are no clearer than the roughness around them; marks keep them";
+}
+
 /// What was asked and not met, and quads that want a look.
 void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, RemeshResult& result) {
   const RemeshReport& report = result.report;
@@ -221,6 +237,7 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
     warnings.push_back(std::to_string(report.features_given_way) +
                        " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid "
                        "quads: more quads, or marks, keep them");
+  if (const std::string raised = sharp_angle_warning(run); !raised.empty()) warnings.push_back(raised);
   const int lone = run.options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
     warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");

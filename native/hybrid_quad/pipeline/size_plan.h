@@ -32,6 +32,7 @@ struct ComponentPlan {
   std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
   double least_ratio = 0;       ///< see FeatureSizeOptions
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
+  double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
 };
 

@@ -1,6 +1,7 @@
 #include "hybrid_quad/singular_patches/singular_patches.h"
 
 #include "hybrid_quad/singular_patches/patch_growth.h"
+#include "hybrid_quad/singular_patches/patch_room.h"
 #include "hybrid_quad/singular_patches/patch_triangles.h"
 
 namespace hybrid_quad {
@@ -10,10 +11,9 @@ namespace {
 double area_of(const PatchSurface& patch) { return patch.mesh.total_area(); }
 
 /// A patch has about as many quads as fit its area and its border. Many more come from a function that oscillates.
-bool is_oversized(const PatchQuads& quads, const PatchSurface& patch) {
+bool is_oversized(const PatchQuads& quads, double by_area) {
   int arcs = 0;
   for (const int arc : quads.arc) arcs += arc >= 0;
-  const double by_area = area_of(patch) / (patch.target_length * patch.target_length);
   return static_cast<double>(quads.quads.size()) > 2 * by_area + arcs;
 }
 
@@ -34,7 +34,7 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
   } catch (const InternalError& error) {
     out.rejected.push_back(error.what());
   }
-  if (out.rejected.empty() && is_oversized(out.quads, patch)) out.rejected.push_back("more quads than the patch has room for");
+  if (out.rejected.empty() && is_oversized(out.quads, quads_by_area(surface, regular.overlay, pieces))) out.rejected.push_back("more quads than the patch has room for");
   if (!out.rejected.empty()) {
     out.combinatorial = true;
     out.quads = combinatorial_fill(patch, context);
