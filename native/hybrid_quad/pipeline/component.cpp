@@ -177,12 +177,12 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     // They see to it that no more quads are in doubt; one that was may still have become flawed, which no shape is worth.
     const auto put_best_right = [&](LastMeans means) {
       const QuadMesh before = best.mesh;
-      const int flawed = best.flawed_quads, doubtful = best.doubtful_quads;
-      const int count = put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
-      if (best.flawed_quads <= flawed) return count;
+      const int flawed_before = best.flawed_quads, doubtful_before = best.doubtful_quads;
+      const int places = put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+      if (best.flawed_quads <= flawed_before) return places;
       best.mesh = before;
-      best.flawed_quads = flawed;
-      best.doubtful_quads = doubtful;
+      best.flawed_quads = flawed_before;
+      best.doubtful_quads = doubtful_before;
       return 0;
     };
     best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
