@@ -118,7 +118,6 @@ class FoldedSplitter {
       const int folded = splits == 1 ? own : worst_inside(*trial);
       if (folded < 0 || !(trial = best_split(*trial, folded, before))) return 0;
       if (quads_.quads.size() + trial->mesh.quads.size() - patch.quads.size() > most_quads_) return 0;
-      if (trial->shapes.folded > before.folded) return 0;  // too many for another split
       if (!is_worth_it(trial->shapes, before)) continue;
       patch.mesh = std::move(trial->mesh);
       put_back(patch, quads_);
