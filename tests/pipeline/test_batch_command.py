@@ -249,7 +249,9 @@ class Killed(BaseException):
     """Stands for SIGKILL between two steps."""
 
 
-@pytest.mark.parametrize("step", ["before the result is moved", "before the status is written"])
+@pytest.mark.parametrize(
+    "step", ["before the result is moved", "before the status is written", "before it has tidied up"]
+)
 def test_a_finished_run_whose_end_was_missed_is_taken_over(asset, tmp_path, monkeypatch, step):
     plan = BatchPlan(output=str(tmp_path / "out"))
     files = files_of(asset, plan)
@@ -257,19 +259,22 @@ def test_a_finished_run_whose_end_was_missed_is_taken_over(asset, tmp_path, monk
     def killed(*_arguments):
         raise Killed
 
+    name = {
+        "before the result is moved": "_publish",
+        "before the status is written": "write_status",
+        "before it has tidied up": "_tidy_up",
+    }[step]
     with monkeypatch.context() as patch:
-        if step == "before the result is moved":
-            patch.setattr(run_module, "_publish", killed)
-        else:
-            patch.setattr(run_module, "write_status", killed)
+        patch.setattr(run_module, name, killed)
         with pytest.raises(Killed):
             run_module.run_asset(asset, plan)
-    assert files.result.exists() == (step == "before the status is written")
-    assert read_status(files.status) is None
+    assert files.result.exists() == (step != "before the result is moved")
+    assert (read_status(files.status) is None) == (step != "before it has tidied up")
     monkeypatch.setattr(run_module, "run_process", lambda *_, **__: pytest.fail("it was run again"))
     assert run_module.run_asset(asset, plan).status == "ok"
     assert read_status(files.status).result_bytes == files.result.stat().st_size
     assert_sound(files.result)
+    assert not list(files.work.parent.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -75,21 +75,28 @@ def _run(asset: Asset, plan: BatchPlan, files: AssetFiles, stop: Callable[[], bo
         described = replace(described, status=asset_status.UNREADABLE, message=f"{error.filename}: {error.strerror}")
         return _publish(described, files)
     described = replace(described, job_hash=key)
-    if found := _standing(described, files, plan):
+    lock_file = files.work.with_suffix(".lock")
+    found = _standing(described, files, plan)
+    if found and not files.work.exists() and not lock_file.exists():
         return found
     files.work.parent.mkdir(parents=True, exist_ok=True)
-    lock_file = files.work.with_suffix(".lock")
     with asset_lock(lock_file, stop) as lock:
         if lock is None:
             return None
-        if found := _standing(described, files, plan):  # another process has done it meanwhile
-            return found
-        status = _finished_before(described, files, asset, plan) or _work(described, files, asset, plan, stop, lock)
-        if status is not None:
+        # Another process has done it meanwhile, or was killed before it had tidied up.
+        status = _standing(described, files, plan)
+        if status is None:
+            status = _finished_before(described, files, asset, plan) or _work(described, files, asset, plan, stop, lock)
+            if status is None:
+                return None
             _publish(status, files, files.work / result_name(asset, plan))
-            shutil.rmtree(files.work, ignore_errors=True)
-            lock_file.unlink(missing_ok=True)  # who waits for it looks at the status file next
+        _tidy_up(files.work, lock_file)
         return status
+
+
+def _tidy_up(work: Path, lock_file: Path) -> None:
+    shutil.rmtree(work, ignore_errors=True)
+    lock_file.unlink(missing_ok=True)  # who waits for it looks at the status file next
 
 
 def _described(asset: Asset, plan: BatchPlan, files: AssetFiles) -> AssetStatus:
