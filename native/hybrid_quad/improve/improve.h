@@ -80,10 +80,11 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
 /// fewer. Mostly sides that cut a feature curve's bend off. Each split adds two to six quads; all other vertices stay, unless it
 /// takes mending.
 /// \param agreement  of flawed_quads  \param whole  as for improve_quads
+/// \param trials  of splits that may be made, in this call and those that are to share them; fewer afterwards
 /// \returns sides split
 int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const Agreement& agreement, const RunContext& context,
-                       const SurfaceIndex* whole = nullptr);
+                       const SurfaceIndex* whole = nullptr, int* trials = nullptr);
 
 /// Against quads with a scaled Jacobian of zero or less (or hardly more), flawed or not: mostly quads between corners and curves, whose
 /// places are given. A side is split in three, or two sides one after the other, and the vertices of the quad, of those around it and

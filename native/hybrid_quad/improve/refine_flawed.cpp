@@ -69,7 +69,7 @@ class FlawedRefiner {
   bool split_nearest() {
     if (fewest_left_ > kFew) return false;
     QuadMesh mesh = nearest_;
-    split_flawed_quads(mesh, input_, features_, index_, options_, agreement_, context_, &whole_);
+    split_flawed_quads(mesh, input_, features_, index_, options_, agreement_, context_, &whole_, &split_trials_left_);
     return memory_.flawed_of(mesh).size() < flawed_.size() && take_if_better(mesh);
   }
 
@@ -186,6 +186,7 @@ class FlawedRefiner {
   QuadMesh nearest_;  ///< refined, with as few flawed as any that was not kept
   std::size_t fewest_left_ = 0;
   int rounds_left_;
+  int split_trials_left_ = 150;  ///< of sides, for all that was refined: where they help, the first hundred or so do
 };
 
 }  // namespace

@@ -23,9 +23,10 @@ constexpr std::array<std::array<double, 2>, 3> kPlaces{{{1.0 / 3, 2.0 / 3}, {0.2
 class FlawedSplitter {
  public:
   FlawedSplitter(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context)
+                 const SurfaceIndex& whole, const Agreement& agreement, const ImproveOptions& options, const RunContext& context,
+                 int& trials)
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), agreement_(agreement), options_(options),
-        context_(context), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
+        context_(context), trials_left_(trials), memory_(whole, agreement, mean_edge_length(quads)), futile_(mean_edge_length(quads)) {}
 
   /// A split that leaves as many flawed quads may lead to one that leaves fewer.
   int run() {
@@ -153,16 +154,18 @@ class FlawedSplitter {
   const Agreement& agreement_;
   const ImproveOptions& options_;
   const RunContext& context_;
+  int& trials_left_;
   FlawMemory memory_;
   FutileMending futile_;
-  int trials_left_ = 200;  ///< each takes some milliseconds for a thousand quads
 };
 
 }  // namespace
 
 int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole) {
-  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context).run();
+                       const ImproveOptions& options, const Agreement& agreement, const RunContext& context, const SurfaceIndex* whole,
+                       int* trials) {
+  int usual = 200;  // each takes some milliseconds for a thousand quads
+  return FlawedSplitter(quads, input, features, index, whole ? *whole : index, agreement, options, context, trials ? *trials : usual).run();
 }
 
 }  // namespace hybrid_quad
