@@ -95,7 +95,7 @@ int first_face_at(const TriangleMesh& mesh, const std::vector<int>& region, int 
 }  // namespace
 
 SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& region, const Vector3& p, int start) {
-  constexpr int kMostFan = 64;
+  constexpr int kMostFan = 64, kMostSteps = 1000;
   int place = kInside;
   const auto project = [&](int f, int* where) {
     const auto& t = mesh.face(f);
@@ -118,7 +118,8 @@ SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& r
     return true;
   };
   // Every step is strictly nearer, so no face comes twice.
-  for (bool moved = true; moved && place != kInside;) {
+  bool moved = true;
+  for (int step = 0; moved && place != kInside && step < kMostSteps; ++step) {
     moved = false;
     const int f = best.face;
     if (place < kCorner0) {
