@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "hybrid_quad/mesh/surface_index.h"
 #include "support/meshes.h"
@@ -95,6 +99,31 @@ TEST(SurfaceIndex, WalkReachesTheNearestPointOfAConvexSurface) {
     const Vector3 p = 1.1 * Vector3(0.3, -0.5, 0.8);
     EXPECT_NEAR(index.walk(p, f).squared_distance, index.nearest(p).squared_distance, 1e-12);
   }
+}
+
+/// A strip of needles across its way: each is one step.
+TEST(SurfaceIndex, WalkEndsHoweverManyTrianglesLieOnItsWay) {
+  constexpr int kCount = 5000;
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> faces;
+  for (int i = 0; i <= kCount; ++i) {
+    positions.emplace_back(i, 0, 0);
+    positions.emplace_back(i, 1e4, 0);
+    if (i == kCount) break;
+    faces.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+    faces.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+  }
+  const TriangleMesh m(std::move(positions), std::move(faces));
+  const SurfaceIndex index(m, {});
+  const Vector3 near(400.2, 5000, 1), far(4900.2, 5000, 1);
+  EXPECT_NEAR(index.walk(near, 0).squared_distance, 1, 1e-9);
+  const SurfacePoint ended = index.walk(far, 0);
+  EXPECT_GT(ended.squared_distance, 2) << "it went all the way";
+  EXPECT_LT(std::sqrt(ended.squared_distance), 4900.2 - 400) << "it went in that direction";
+  EXPECT_NEAR((ended.position - far).squaredNorm(), ended.squared_distance, 1e-6);
+  SurfaceIndex::Filter filter;
+  filter.hint = 0;
+  EXPECT_NEAR(index.nearest(far, filter).squared_distance, 1, 1e-9) << "a hint is no more than that";
 }
 
 TEST(SurfaceIndex, DegenerateTriangleActsAsItsSegment) {

@@ -119,7 +119,7 @@ SurfacePoint walk_to_nearest(const TriangleMesh& mesh, const std::vector<int>& r
   };
   // Every step is strictly nearer, so no face comes twice.
   bool moved = true;
-  for (int step = 0; moved && place != kInside && step < kMostSteps; ++step) {
+  for (int taken = 0; moved && place != kInside && taken < kMostSteps; ++taken) {
     moved = false;
     const int f = best.face;
     if (place < kCorner0) {
