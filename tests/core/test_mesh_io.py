@@ -255,6 +255,7 @@ def test_a_mark_of_the_byte_order_before_the_text_is_none_of_it(tmp_path, suffix
         ("a.off", "OOPS\n", "OFF"),
         ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends before"),
         ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "ends before"),
+        ("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n-13 0 1 2\n", "face 1, .*-13"),
         ("a.off", "4OFF\n0 0 0\n", "4OFF"),
         ("a.ply", b"\x00\x01\x02", "PLY"),
         ("a.ply", PLY[:-12], "PLY"),

@@ -15,7 +15,8 @@ def read_off(text: str) -> tuple[FloatArray, Polygons]:
     Raises
     ------
     ValueError
-        If it is no OFF file of points in space, or ends before all that its header announces.
+        If it is no OFF file of points in space, ends before all that its header announces, or has a face
+        with a negative number of corners.
     """
     lines = [tokens for line in text.splitlines() if (tokens := line.partition("#")[0].split())]
     if not lines or not lines[0][0].upper().endswith("OFF"):
@@ -30,6 +31,8 @@ def read_off(text: str) -> tuple[FloatArray, Polygons]:
     positions = [token for _ in range(vertex_count) for token in _off_row(rows, lambda _: 3)[:3]]
     faces = [_off_row(rows, lambda size: 1 + int(size)) for _ in range(face_count)]
     sizes = clipped_to_int32([int(face[0]) for face in faces])
+    if (negative := np.flatnonzero(sizes < 0)).size:
+        raise ValueError(f"face {negative[0]}, counted from 0, has {sizes[negative[0]]} corners")
     corners = [int(token) for face, size in zip(faces, sizes.tolist(), strict=True) for token in face[1 : 1 + size]]
     return _points_of_tokens(positions), Polygons(sizes, clipped_to_int32(corners))
 

@@ -29,7 +29,8 @@ def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
     # Binary files may begin with the word "solid" as texts do, and may have something behind their triangles.
     is_text = data.lstrip()[:5].lower() == b"solid"
     if count >= 0 and (end == len(data) or (end < len(data) and not is_text)):
-        points = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
+        with np.errstate(invalid="ignore"):  # bytes may be numbers that signal
+            points = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
     elif is_text:
         points = _points_of_text(data)
     else:
