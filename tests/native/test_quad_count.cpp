@@ -32,6 +32,12 @@ void expect_sound(const QuadComplex& c, const QuadComplex& before) {
   EXPECT_EQ(euler_characteristic(to_quad_mesh(c)), euler_characteristic(before));
 }
 
+std::vector<char> only(const Polychords& polychords, std::size_t id) {
+  std::vector<char> chosen(polychords.length.size(), 0);
+  chosen[id] = 1;
+  return chosen;
+}
+
 TEST(QuadCount, RowsMeetNumbersBetweenThoseOfGrids) {
   for (const double wanted : {240.0, 290.0, 340.0, 380.0}) {
     QuadComplex c = quad_torus(20, 15);
@@ -62,8 +68,32 @@ TEST(QuadCount, NoRowIsLeftThatMayGo) {
   for (std::size_t id = 0; id < polychords.length.size(); ++id) {
     if (polychords.length[id] > room) continue;
     QuadComplex fewer = c;
-    EXPECT_FALSE(collapse_polychord(fewer, polychords, static_cast<int>(id))) << id;
+    EXPECT_FALSE(collapse_polychords(fewer, polychords, only(polychords, id))) << id;
   }
+}
+
+TEST(QuadCount, RowsThatAreApartGoAsIfOneByOne) {
+  // Around a tube the rows taper: the narrow ones have others like them beside them, which grow wider as they go.
+  QuadComplex c = quad_tube(12, 90);
+  for (Vector3& p : c.positions) p[2] = 40 * (1 - std::exp(-p[2] / 40));
+  const QuadComplex before = c;
+  const double wanted = 12 * 75;
+  EXPECT_EQ(fit_quad_count(c, wanted, 5, {}), 15);
+  EXPECT_EQ(c.quad_count(), wanted);
+  expect_sound(c, before);
+  double narrowest = 1e9;
+  for (int d = 0; d < static_cast<int>(c.opposite.size()); ++d) {
+    const double height = std::abs(c.positions[c.to(d)][2] - c.positions[c.from(d)][2]);
+    if (height > 1e-9) narrowest = std::min(narrowest, height);
+  }
+  EXPECT_GT(narrowest, 0.12);  // 0.11 before
+}
+
+TEST(QuadCount, AnswersARequestToStop) {
+  QuadComplex c = quad_torus(20, 15);
+  RunContext context;
+  context.stop_requested = [] { return true; };
+  EXPECT_THROW(fit_quad_count(c, 240, 5, {}, context), Cancelled);
 }
 
 TEST(QuadCount, BoxesKeepTheirCorners) {
@@ -140,13 +170,13 @@ TEST(PolychordCollapse, RefusesWhatWouldBreak) {
     const Polychords rows = trace_polychords(c);
     for (std::size_t id = 0; id < rows.length.size(); ++id) {
       QuadComplex changed = before;
-      if (collapse_polychord(changed, rows, static_cast<int>(id))) expect_sound(changed, before);
+      if (collapse_polychords(changed, rows, only(rows, id))) expect_sound(changed, before);
       else EXPECT_EQ(changed.quad_count(), before.quad_count());
     }
   }
   QuadComplex cube = quad_box(1, 1, 1);
   const Polychords rows = trace_polychords(cube);
-  for (std::size_t id = 0; id < rows.length.size(); ++id) EXPECT_FALSE(collapse_polychord(cube, rows, static_cast<int>(id)));
+  for (std::size_t id = 0; id < rows.length.size(); ++id) EXPECT_FALSE(collapse_polychords(cube, rows, only(rows, id)));
 }
 
 TEST(PolychordCollapse, KeepsCornersApart) {
@@ -154,7 +184,7 @@ TEST(PolychordCollapse, KeepsCornersApart) {
   for (int d = 0; d < static_cast<int>(c.opposite.size()); ++d)
     if (c.opposite[d] < 0) c.kind[c.from(d)] = VertexKind::kCorner;
   const Polychords rows = trace_polychords(c);
-  for (std::size_t id = 0; id < rows.length.size(); ++id) EXPECT_FALSE(collapse_polychord(c, rows, static_cast<int>(id)));
+  for (std::size_t id = 0; id < rows.length.size(); ++id) EXPECT_FALSE(collapse_polychords(c, rows, only(rows, id)));
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ int lone_quads(const QuadComplex& c) {
 
 class PolychordCollapse {
  public:
-  PolychordCollapse(const QuadComplex& complex, const Polychords& polychords, int id)
-      : complex_(complex), of_dart_(polychords.of_dart), id_(id), partner_(complex.positions.size(), -1) {}
+  PolychordCollapse(const QuadComplex& complex, const Polychords& polychords, const std::vector<char>& chosen)
+      : complex_(complex), of_dart_(polychords.of_dart), chosen_(chosen), partner_(complex.positions.size(), -1) {}
 
   bool run(QuadComplex& result) {
     if (!pair_vertices() || !curves_keep_edges()) return false;
@@ -33,7 +33,7 @@ class PolychordCollapse {
 
  private:
   int dart_count() const { return static_cast<int>(complex_.opposite.size()); }
-  bool is_crossed(int d) const { return of_dart_[d] == id_; }
+  bool is_crossed(int d) const { return chosen_[of_dart_[d]] != 0; }
   bool is_removed(int q) const { return is_crossed(4 * q) || is_crossed(4 * q + 1); }
 
   /// Whether the ends of crossed sides are pairs, and each pair may become one.
@@ -147,15 +147,15 @@ class PolychordCollapse {
 
   const QuadComplex& complex_;
   const std::vector<int>& of_dart_;
-  int id_;
+  const std::vector<char>& chosen_;
   std::vector<int> partner_;
 };
 
 }  // namespace
 
-bool collapse_polychord(QuadComplex& complex, const Polychords& polychords, int id) {
+bool collapse_polychords(QuadComplex& complex, const Polychords& polychords, const std::vector<char>& chosen) {
   QuadComplex result;
-  if (!PolychordCollapse(complex, polychords, id).run(result)) return false;
+  if (!PolychordCollapse(complex, polychords, chosen).run(result)) return false;
   complex = std::move(result);
   return true;
 }

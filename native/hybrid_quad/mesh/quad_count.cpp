@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "hybrid_quad/mesh/polychord_collapse.h"
@@ -48,39 +49,93 @@ bool split_widest(QuadComplex& complex, double room, const std::vector<char>& co
   return true;
 }
 
-/// Takes out one row after the other. One that may not go is tried again only when something changed beside it: surfaces with
-/// many handles have thousands of rows, and hardly one that may go.
+/// Rows taken out together: apart from each other, so that each goes as it would alone.
+class RowsApart {
+ public:
+  RowsApart(const QuadComplex& complex, const Polychords& polychords)
+      : complex_(complex), darts_of_(polychords.length.size()), is_at_taken_(complex.positions.size(), 0),
+        is_taken_(complex.quad_count(), 0), chosen_(polychords.length.size(), 0) {
+    for (int d = 0; d < static_cast<int>(polychords.of_dart.size()); ++d) darts_of_[polychords.of_dart[d]].push_back(d);
+  }
+
+  bool crosses(int row) const { return any(row, [&](int d) { return is_taken_[d / 4] != 0; }); }
+  bool touches(int row) const { return any(row, [&](int d) { return is_at_taken_[complex_.from(d)] || is_at_taken_[complex_.to(d)]; }); }
+  const std::vector<char>& chosen() const { return chosen_; }  ///< by row
+
+  void take(int row) {
+    chosen_[row] = 1;
+    for (const int d : darts_of_[row]) is_taken_[d / 4] = is_at_taken_[complex_.from(d)] = is_at_taken_[complex_.to(d)] = 1;
+  }
+
+ private:
+  template <class Test>
+  bool any(int row, const Test& test) const {
+    return std::any_of(darts_of_[row].begin(), darts_of_[row].end(), test);
+  }
+
+  const QuadComplex& complex_;
+  std::vector<std::vector<int>> darts_of_;
+  std::vector<char> is_at_taken_, is_taken_, chosen_;
+};
+
+/// Takes out the narrowest row, then the next, and so on. One that may not go is tried again only when something changed beside it:
+/// surfaces with many handles have thousands of rows, and hardly one that may go. Where many may, several go at once.
 class RowRemoval {
  public:
   explicit RowRemoval(const QuadComplex& complex) : may_not_go_(complex.opposite.size(), 0) {}
 
-  bool collapse_narrowest(QuadComplex& complex, double room, const std::vector<char>& counted) {
+  /// \param surplus  quads too many: no further row where the rows have as many
+  /// \param room  no more quads than this
+  /// \return rows taken out
+  int collapse_narrowest(QuadComplex& complex, double surplus, double room, const std::vector<char>& counted) {
     const Polychords polychords = trace_polychords(complex);
-    const std::vector<int> vertex = complex.vertex;
     std::vector<char> fails(polychords.length.size(), 0);
     for (std::size_t d = 0; d < may_not_go_.size(); ++d)
       if (may_not_go_[d]) fails[polychords.of_dart[d]] = 1;
-    for (const Row& row : rows_of(complex, polychords, counted)) {
-      if (row.length > room || fails[row.id]) continue;
-      if (collapse_polychord(complex, polychords, row.id)) {
-        remember(vertex, polychords, row.id, fails);
-        return true;
+    std::vector<Row> rows = rows_of(complex, polychords, counted);
+    rows.erase(std::remove_if(rows.begin(), rows.end(), [&](const Row& row) { return row.length > room || fails[row.id]; }), rows.end());
+    const std::vector<int> vertex = complex.vertex;
+    for (std::size_t first = 0; first < rows.size(); ++first) {
+      for (int most = std::numeric_limits<int>::max(); most > 0; most /= 2) {  // half of them where one may not go
+        RowsApart gone(complex, polychords);
+        most = choose(rows, first, most, surplus, room, gone);
+        if (!collapse_polychords(complex, polychords, gone.chosen())) continue;
+        remember(vertex, polychords, gone.chosen(), fails);
+        return most;
       }
-      fails[row.id] = 1;
+      fails[rows[first].id] = 1;
     }
-    return false;
+    return 0;
   }
 
  private:
+  /// A row and, of those that follow, what would go next if they went one by one: narrower than any that crosses a chosen one, and
+  /// hardly wider than the first, as what lies beside a row that goes grows wider.
+  static int choose(const std::vector<Row>& rows, std::size_t first, int most, double surplus, double room, RowsApart& gone) {
+    constexpr double kMostWider = 0.2;  // in logarithms; what lies beside one that goes grows by .4
+    gone.take(rows[first].id);
+    int count = 1;
+    double quads = rows[first].length;
+    for (std::size_t i = first + 1; count < most && i < rows.size() && quads < surplus; ++i) {
+      if (rows[i].width > rows[first].width + kMostWider || gone.crosses(rows[i].id)) break;
+      if (gone.touches(rows[i].id) || quads + rows[i].length > room) continue;
+      gone.take(rows[i].id);
+      quads += rows[i].length;
+      ++count;
+    }
+    return count;
+  }
+
   /// What fails far from the row that went still does: whether a row may go depends on the quads around its vertices, and on the
   /// number of edges of curves, which only falls.
   /// \param vertex, polychords  of the complex before
-  void remember(const std::vector<int>& vertex, const Polychords& polychords, int gone, std::vector<char>& fails) {
+  /// \param gone  by row
+  void remember(const std::vector<int>& vertex, const Polychords& polychords, const std::vector<char>& gone, std::vector<char>& fails) {
     const int darts = static_cast<int>(vertex.size());
     const std::size_t vertices = vertex.empty() ? 0 : 1 + *std::max_element(vertex.begin(), vertex.end());
     std::vector<char> moved(vertices, 0), is_near(vertices, 0);
     for (int d = 0; d < darts; ++d)
-      if (polychords.of_dart[d] == gone) moved[vertex[d]] = moved[vertex[QuadComplex::next(d)]] = 1;
+      if (gone[polychords.of_dart[d]]) moved[vertex[d]] = moved[vertex[QuadComplex::next(d)]] = 1;
     for (int q = 0; q < darts; q += 4) {
       const auto corners = vertex.begin() + q;
       if (std::any_of(corners, corners + 4, [&](int v) { return moved[v] != 0; }))
@@ -90,7 +145,7 @@ class RowRemoval {
       if (is_near[vertex[d]] || is_near[vertex[QuadComplex::next(d)]]) fails[polychords.of_dart[d]] = 0;
     may_not_go_.clear();
     for (int q = 0; q < darts; q += 4) {
-      if (polychords.of_dart[q] == gone || polychords.of_dart[q + 1] == gone) continue;  // the others stay in their order
+      if (gone[polychords.of_dart[q]] || gone[polychords.of_dart[q + 1]]) continue;  // the others stay in their order
       for (int d = q; d < q + 4; ++d) may_not_go_.push_back(fails[polychords.of_dart[d]]);
     }
   }
@@ -100,15 +155,18 @@ class RowRemoval {
 
 }  // namespace
 
-int fit_quad_count(QuadComplex& complex, double wanted, double tolerance, const std::vector<char>& counted) {
+int fit_quad_count(QuadComplex& complex, double wanted, double tolerance, const std::vector<char>& counted, const RunContext& context) {
   const double before = complex.quad_count();
   int changed = 0;
   RowRemoval removal(complex);
-  for (;; ++changed) {
+  for (;;) {
+    context.checkpoint();
     const double count = complex.quad_count(), off = count - wanted;
     if (std::abs(off) <= tolerance) return changed;
     const double room = std::min(std::abs(off) + tolerance, kMostChange * before - std::abs(count - before));
-    if (!(off > 0 ? removal.collapse_narrowest(complex, room, counted) : split_widest(complex, room, counted))) return changed;
+    const int now = off > 0 ? removal.collapse_narrowest(complex, off - tolerance, room, counted) : split_widest(complex, room, counted);
+    if (now == 0) return changed;
+    changed += now;
   }
 }
 

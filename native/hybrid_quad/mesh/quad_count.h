@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/quad_complex.h"
 
 namespace hybrid_quad {
@@ -10,6 +11,7 @@ namespace hybrid_quad {
 /// \param tolerance  of the number
 /// \param counted  #curves, or empty: those whose number of edges stays
 /// \return rows split and taken out
-int fit_quad_count(QuadComplex& complex, double wanted, double tolerance, const std::vector<char>& counted);
+int fit_quad_count(QuadComplex& complex, double wanted, double tolerance, const std::vector<char>& counted,
+                   const RunContext& context = {});
 
 }  // namespace hybrid_quad

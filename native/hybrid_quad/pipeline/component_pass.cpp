@@ -343,7 +343,8 @@ class ComponentRemesher {
       out.repairs.split_polychords = repair.split_polychords;
       out.quads_before_rows = complex.quad_count();
       if (is_in_reach(complex.quad_count(), wanted) && plan_.guides.empty() && wishes_.most_stretch <= 1)
-        out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted);
+        out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted,
+                                                 context_.in_stage("assemble", 0.83, 0.83));
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);

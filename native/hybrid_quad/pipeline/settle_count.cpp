@@ -76,7 +76,7 @@ class CountSettling {
   /// \returns rows changed
   int change_rows() {
     QuadComplex complex = complex_of(result_.mesh);
-    const int rows = fit_quad_count(complex, wanted_, tolerance(), counted_);
+    const int rows = fit_quad_count(complex, wanted_, tolerance(), counted_, context_);
     if (rows == 0 || !is_worth_improving(error_of(complex.quad_count(), wanted_), now_.error)) return 0;
     QuadMesh mesh = to_quad_mesh(complex);
     order_feature_edges(mesh, plan_.mesh, plan_.features);
