@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/mesh/needle_axes.h"
 #include "hybrid_quad/mesh/surface_index.h"
 #include "support/meshes.h"
 
@@ -62,6 +64,72 @@ TEST(SurfaceIndex, SizeAndPlaceMakeNoDifference) {
       }
       EXPECT_GE(index.nearest(1e25 * size * Vector3(1, 1, 1)).face, 0) << "from however far away";
     }
+}
+
+/// A torus, and strips of slanting needles: fans from one end to a row of vertices along the other side.
+TriangleMesh torus_and_needles() {
+  const TriangleMesh torus = test::torus(24, 12);
+  std::vector<Vector3> positions = torus.positions();
+  std::vector<std::array<int, 3>> faces = torus.faces();
+  constexpr int kNeedles = 100;
+  for (const Vector3& along : {Vector3(1, 0.5, -0.7), Vector3(-0.2, 1, 0.4), Vector3(2, 0, 0)}) {
+    const Vector3 across = 1e-3 * along.cross(Vector3(0, 0, 1));
+    const int tip = static_cast<int>(positions.size());
+    positions.push_back(along);
+    for (int i = 0; i <= kNeedles; ++i) positions.emplace_back(-along * (0.5 + 0.5 * i / kNeedles) + across);
+    for (int i = 1; i <= kNeedles; ++i) faces.push_back({tip, tip + i, tip + i + 1});
+  }
+  return TriangleMesh(std::move(positions), std::move(faces));
+}
+
+TEST(SurfaceIndex, FindsWhatBruteForceFindsAmongNeedles) {
+  const TriangleMesh m = torus_and_needles();
+  ASSERT_FALSE(NeedleAxes(m).empty());
+  const SurfaceIndex index(m, {});
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 anywhere(u(random), u(random), u(random));
+    const auto& face = m.face(static_cast<int>(random() % m.face_count()));
+    const Vector3 p = i % 2 ? anywhere : Vector3(m.position(face[0]) * 0.3 + m.position(face[1]) * 0.7 + 1e-3 * anywhere);
+    const SurfacePoint q = index.nearest(p);
+    ASSERT_GE(q.face, 0);
+    EXPECT_NEAR(q.squared_distance, brute_force(m, p, -1, {}), 1e-12);
+    const Vector3 reach = Vector3::Constant(i % 3 ? 0.05 : 0.4);
+    std::vector<char> is_met(m.face_count(), 0);
+    index.any_in_box(p - reach, p + reach, [&](int f) { return is_met[f] = 1, false; });
+    int missed = 0;
+    for (int f = 0; f < m.face_count(); ++f)
+      for (const double t : {0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.8, 1.0}) {
+        const auto& v = m.face(f);
+        const Vector3 on_face = (1 - t) * m.position(v[0]) + 0.5 * t * (m.position(v[1]) + m.position(v[2]));
+        missed += ((on_face - p).cwiseAbs().array() < reach.array()).all() && !is_met[f];
+      }
+    EXPECT_EQ(missed, 0);
+  }
+}
+
+TEST(NeedleAxes, LieAlongNeedlesOfOneDirection) {
+  const auto turn_of = [](const std::vector<Vector3>& directions) {
+    std::vector<Vector3> positions;
+    std::vector<std::array<int, 3>> faces;
+    for (const Vector3& d : directions) {
+      const int first = static_cast<int>(positions.size());
+      for (const Vector3& p : {Vector3(0, 0, 0), d, Vector3(d + 1e-4 * Vector3(1, -2, 3))}) positions.push_back(p);
+      faces.push_back({first, first + 1, first + 2});
+    }
+    const NeedleAxes needles(TriangleMesh(positions, faces));
+    EXPECT_FALSE(needles.empty());
+    Eigen::Matrix3d group = Eigen::Matrix3d::Zero();
+    for (std::size_t f = 0; f < faces.size(); ++f) needles.add_to(group, static_cast<int>(f));
+    return NeedleAxes::turn_of(group);
+  };
+  const Vector3 slanting(1, 2, -0.5);
+  const Eigen::Matrix3d turn = turn_of({slanting, 1.5 * slanting, -slanting});
+  EXPECT_NEAR(std::abs((turn * slanting.normalized())[0]), 1, 1e-6);
+  EXPECT_LT((turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_TRUE(turn_of({slanting, Vector3(2, -1, 0)}).isIdentity(0)) << "two directions";
+  EXPECT_TRUE(NeedleAxes(test::torus(24, 12)).empty());
 }
 
 TEST(SurfaceIndex, SameForAnyNumberOfThreads) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/mesh/needle_axes.h"
 #include "hybrid_quad/mesh/surface_walk.h"
 
 namespace hybrid_quad {
@@ -46,6 +47,7 @@ Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b
 namespace {
 
 using Four = Eigen::Array4f;
+using Matrix3 = Eigen::Matrix3d;
 
 constexpr int kWidth = 4;
 constexpr int kNone = std::numeric_limits<int>::max();
@@ -78,6 +80,23 @@ float rounded_up(double x) {
 struct FloatBox {
   std::array<float, 3> low, high;
 };
+
+/// The box along other axes that holds a box.
+FloatBox turned(const FloatBox& box, const Matrix3& turn) {
+  Vector3 middle, half;
+  for (int i = 0; i < 3; ++i) {
+    middle[i] = 0.5 * (static_cast<double>(box.low[i]) + box.high[i]);
+    half[i] = 0.5 * (static_cast<double>(box.high[i]) - box.low[i]);
+  }
+  middle = turn * middle;
+  half = turn.cwiseAbs() * half;
+  FloatBox out;
+  for (int i = 0; i < 3; ++i) {
+    out.low[i] = rounded_down(middle[i] - half[i]);
+    out.high[i] = rounded_up(middle[i] + half[i]);
+  }
+  return out;
+}
 
 /// Up to four children with their boxes, side by side so that all are tested at once.
 struct alignas(64) Node {
@@ -122,6 +141,7 @@ struct SurfaceIndex::Tree {
   std::vector<int> order;
   std::vector<std::array<Vector3, 3>> corners;  ///< of the faces in `order`
   std::vector<Node> nodes;
+  std::vector<Matrix3> turns;  ///< by node: to the axes of its boxes, along needles; empty: all are the coordinate axes
   Vector3 origin = Vector3::Zero();
   double scale = 1;  ///< of the tree's units, in which the surface has a size of 1: single precision overflows else
 
@@ -145,6 +165,20 @@ struct SurfaceIndex::Tree {
     }
     return box;
   }
+  /// A point along a node's axes. \param here  along the coordinate axes
+  FloatBox along_axes_of(int node, const Vector3& p, const FloatBox& here) const {
+    if (!is_turned(node)) return here;
+    const Vector3 turned = turns[node] * (p - origin) + origin;
+    return in_units(turned, turned);
+  }
+  /// The box along a node's axes that holds what lies between low and high.
+  FloatBox along_axes_of(int node, const Vector3& low, const Vector3& high, const FloatBox& here) const {
+    if (!is_turned(node)) return here;
+    const Vector3 middle = turns[node] * (0.5 * (low + high) - origin) + origin;
+    const Vector3 half = turns[node].cwiseAbs() * (0.5 * (high - low));
+    return in_units(middle - half, middle + half);
+  }
+  bool is_turned(int node) const { return !turns.empty() && turns[node](0, 0) != 1; }  // NeedleAxes::turn_of()
   /// A bound for Node::squared_distances() of all that may be as near to p as that.
   float limit_of(double squared_distance, const Vector3& p) const {
     constexpr float kMoreThanRounding = 1 + 1e-6F;
@@ -163,8 +197,8 @@ struct SurfaceIndex::Tree {
     return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
   void build(int threads);
-  void bound(std::vector<Node>& tree) const;
-  static void put_below(Node& node, int lane, const Node& below);
+  void bound(std::vector<Node>& tree, const std::vector<Matrix3>& turns) const;
+  static void put_below(Node& node, int lane, const Node& below, const Matrix3* turn);
 };
 
 namespace {
@@ -180,65 +214,92 @@ struct Range {
   int size() const { return end - begin; }
 };
 
-/// Halves a range across its longest side. \returns the second half
-Range halve(std::vector<Item>& items, Range& range) {
-  Box middles;
-  for (int i = range.begin; i < range.end; ++i) middles.add({items[i].middle, items[i].middle});
-  int axis = 0;
-  (middles.high - middles.low).maxCoeff(&axis);
-  const int half = (range.begin + range.end) / 2;
-  std::nth_element(items.begin() + range.begin, items.begin() + half, items.begin() + range.end,
-                   [axis](const Item& x, const Item& y) {
-                     return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.face < y.face;
-                   });
-  const Range second{half, range.end};
-  range.end = half;
-  return second;
-}
+/// Faces that become a tree, and which way the needles among them lie.
+class TreeBuilder {
+ public:
+  TreeBuilder(std::vector<Item>& items, const NeedleAxes& needles) : items_(items), needles_(needles) {}
 
-struct Parts {
-  std::array<Range, kWidth> range;
-  int count = 0;
-};
-
-/// Up to four parts of about the same size.
-Parts quartered(std::vector<Item>& items, const Range& range) {
-  Parts parts{{range}, 1};
-  while (parts.count < kWidth) {
-    const auto largest = std::max_element(parts.range.begin(), parts.range.begin() + parts.count,
-                                          [](const Range& x, const Range& y) { return x.size() < y.size(); });
-    if (largest->size() < 2) break;
-    parts.range[parts.count++] = halve(items, *largest);
-  }
-  return parts;
-}
-
-/// The tree of a range, without boxes.
-std::vector<Node> tree_of(std::vector<Item>& items, const Range& all) {
-  struct Task {
-    int node;
-    Range range;
+  struct Parts {
+    std::array<Range, kWidth> range;
+    int count = 0;
   };
-  std::vector<Node> nodes(1);
-  std::vector<Task> tasks{{0, all}};
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    const Parts parts = quartered(items, task.range);
-    for (int k = 0; k < parts.count; ++k) {
-      const Range& range = parts.range[k];
-      if (range.size() == 1) {
-        nodes[task.node].child[k] = ~range.begin;
-        continue;
-      }
-      const int child = static_cast<int>(nodes.size());
-      nodes[task.node].child[k] = child;
-      tasks.push_back({child, range});
-      nodes.emplace_back();
+  /// Up to four parts of about the same size. \param turn  to the axes across which parts are halved
+  Parts quartered(const Range& range, const Matrix3& turn) {
+    Parts parts{{range}, 1};
+    while (parts.count < kWidth) {
+      const auto largest = std::max_element(parts.range.begin(), parts.range.begin() + parts.count,
+                                            [](const Range& x, const Range& y) { return x.size() < y.size(); });
+      if (largest->size() < 2) break;
+      parts.range[parts.count++] = halve(*largest, turn);
     }
+    return parts;
   }
-  return nodes;
-}
+
+  /// To the axes of the boxes of a range.
+  Matrix3 turn_of(const Range& range) const {
+    if (needles_.empty()) return Matrix3::Identity();
+    Matrix3 group = Matrix3::Zero();
+    for (int i = range.begin; i < range.end; ++i) needles_.add_to(group, items_[i].face);
+    return NeedleAxes::turn_of(group);
+  }
+
+  /// The tree of a range, without boxes. \param turns  of its nodes; stays empty where none is turned
+  std::vector<Node> tree_of(const Range& all, std::vector<Matrix3>& turns) {
+    struct Task {
+      int node;
+      Range range;
+    };
+    std::vector<Node> nodes(1);
+    std::vector<Task> tasks{{0, all}};
+    while (!tasks.empty()) {
+      const Task task = tasks.back();
+      tasks.pop_back();
+      const Matrix3 turn = turn_of(task.range);
+      if (!needles_.empty()) {
+        turns.resize(nodes.size(), Matrix3::Identity());
+        turns[task.node] = turn;
+      }
+      const Parts parts = quartered(task.range, turn);
+      for (int k = 0; k < parts.count; ++k) {
+        const Range& range = parts.range[k];
+        if (range.size() == 1) {
+          nodes[task.node].child[k] = ~range.begin;
+          continue;
+        }
+        const int child = static_cast<int>(nodes.size());
+        nodes[task.node].child[k] = child;
+        tasks.push_back({child, range});
+        nodes.emplace_back();
+      }
+    }
+    return nodes;
+  }
+
+ private:
+  /// Halves a range across its longest side. \returns the second half
+  Range halve(Range& range, const Matrix3& turn) {
+    Box middles;
+    for (int i = range.begin; i < range.end; ++i) {
+      const Vector3 middle = turn * items_[i].middle;
+      middles.add({middle, middle});
+    }
+    int axis = 0;
+    (middles.high - middles.low).maxCoeff(&axis);
+    const Vector3 across = turn.row(axis);
+    const int half = (range.begin + range.end) / 2;
+    std::nth_element(items_.begin() + range.begin, items_.begin() + half, items_.begin() + range.end,
+                     [&across](const Item& x, const Item& y) {
+                       const double a = across.dot(x.middle), b = across.dot(y.middle);
+                       return a != b ? a < b : x.face < y.face;
+                     });
+    const Range second{half, range.end};
+    range.end = half;
+    return second;
+  }
+
+  std::vector<Item>& items_;
+  const NeedleAxes& needles_;
+};
 
 }  // namespace
 
@@ -260,18 +321,22 @@ void SurfaceIndex::Tree::build(int threads) {
   order.resize(face_count);
   corners.resize(face_count);
   // The root's children are trees of their own, which come one after the other behind it.
-  const Parts parts = quartered(items, {0, face_count});
+  const NeedleAxes needles(mesh);
+  TreeBuilder builder(items, needles);
+  const TreeBuilder::Parts parts = builder.quartered({0, face_count}, Matrix3::Identity());
   std::array<std::vector<Node>, kWidth> below;
+  std::array<std::vector<Matrix3>, kWidth> turns_below;
   parallel_for(parts.count, threads, [&](int k) {
     const Range range = parts.range[k];
-    below[k] = tree_of(items, range);
+    below[k] = builder.tree_of(range, turns_below[k]);
     for (int i = range.begin; i < range.end; ++i) {
       order[i] = items[i].face;
       corners[i] = corners_of(items[i].face);
     }
-    bound(below[k]);
+    bound(below[k], turns_below[k]);
   });
   nodes.resize(1);
+  if (!needles.empty()) turns.assign(1, Matrix3::Identity());
   for (int k = 0; k < parts.count; ++k) {
     const int offset = static_cast<int>(nodes.size());
     nodes[0].child[k] = offset;
@@ -279,36 +344,47 @@ void SurfaceIndex::Tree::build(int threads) {
       for (int& child : node.child)
         if (child >= 0 && child != kNone) child += offset;
     nodes.insert(nodes.end(), below[k].begin(), below[k].end());
-    put_below(nodes[0], k, nodes[offset]);
+    turns.insert(turns.end(), turns_below[k].begin(), turns_below[k].end());
+    const Matrix3 turn = needles.empty() ? Matrix3::Identity() : Matrix3(turns[offset].transpose());
+    put_below(nodes[0], k, nodes[offset], needles.empty() ? nullptr : &turn);
   }
 }
 
-/// Gives a child the box of all that is below it, and the region.
-void SurfaceIndex::Tree::put_below(Node& node, int lane, const Node& below) {
+/// Gives a child the box of all that is below it, and the region. \param turn  from the child's axes to the node's, null where they are the same
+void SurfaceIndex::Tree::put_below(Node& node, int lane, const Node& below, const Matrix3* turn) {
   FloatBox box;
   for (int i = 0; i < 3; ++i) {
     box.low[i] = below.low[i].minCoeff();
     box.high[i] = below.high[i].maxCoeff();
   }
-  node.put(lane, box);
+  node.put(lane, turn ? turned(box, *turn) : box);
   node.region[lane] = below.region[0];
   for (int j = 1; j < kWidth && below.child[j] != kNone; ++j)
     if (below.region[j] != node.region[lane]) node.region[lane] = -1;
 }
 
 /// Boxes and regions of a tree, children before their parents.
-void SurfaceIndex::Tree::bound(std::vector<Node>& tree) const {
-  for (auto node = tree.rbegin(); node != tree.rend(); ++node)
-    for (int k = 0; k < kWidth && node->child[k] != kNone; ++k) {
-      if (node->child[k] >= 0) {
-        put_below(*node, k, tree[node->child[k]]);
+void SurfaceIndex::Tree::bound(std::vector<Node>& tree, const std::vector<Matrix3>& turns_of_tree) const {
+  for (int n = static_cast<int>(tree.size()) - 1; n >= 0; --n) {
+    Node& node = tree[n];
+    for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
+      const int child = node.child[k];
+      if (child >= 0) {
+        Matrix3 turn;
+        if (!turns_of_tree.empty()) turn = turns_of_tree[n] * turns_of_tree[child].transpose();
+        put_below(node, k, tree[child], turns_of_tree.empty() ? nullptr : &turn);
         continue;
       }
-      const int f = order[~node->child[k]];
-      const Box box = box_of(f);
-      node->put(k, in_units(box.low, box.high));
-      node->region[k] = region.empty() ? -1 : region[f];
+      const int f = order[~child];
+      Box box;
+      for (const Vector3& corner : corners[~child]) {
+        const Vector3 p = turns_of_tree.empty() ? corner : Vector3(turns_of_tree[n] * (corner - origin) + origin);
+        box.add({p, p});
+      }
+      node.put(k, in_units(box.low, box.high));
+      node.region[k] = region.empty() ? -1 : region[f];
     }
+  }
 }
 
 SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads) : tree_(std::make_unique<Tree>()) {
@@ -356,7 +432,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
       continue;
     }
     const Node& node = tree.nodes[entry.child];
-    const Four distances = node.squared_distances(place);
+    const Four distances = node.squared_distances(tree.along_axes_of(entry.child, p, place));
     const int begin = size;
     for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
       const float distance = distances[k];
@@ -386,7 +462,7 @@ bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std
       continue;
     }
     const Node& node = tree.nodes[child];
-    const std::array<bool, kWidth> meets = node.meet(box);
+    const std::array<bool, kWidth> meets = node.meet(tree.along_axes_of(child, low, high, box));
     for (int k = kWidth; k-- > 0;)
       if (meets[k]) stack[size++] = node.child[k];
   }

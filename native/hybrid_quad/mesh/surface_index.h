@@ -45,7 +45,7 @@ class SurfaceIndex {
   /// The nearest point found by walking from face `start` downhill over neighbours, never across a region's border.
   SurfacePoint walk(const Vector3& p, int start) const;
 
-  /// Calls visit(face) for the faces whose bounding boxes meet the box [low, high], until it returns true.
+  /// Calls visit(face) for the faces that meet the box [low, high], and some others of which the bounding box does, until it returns true.
   bool any_in_box(const Vector3& low, const Vector3& high, const std::function<bool(int)>& visit) const;
 
   const TriangleMesh& mesh() const;

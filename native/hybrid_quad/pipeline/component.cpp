@@ -37,6 +37,10 @@ bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
   return best.flawed_quads > kMany && !is_only_for_flawed(settings.kind);
 }
 
+/// Features that hold more quads than there are to be put their number out of reach anyway. Where passes with as few quads are in vain,
+/// one with enough for them leaves hardly any flawed; settling takes out again what can go without.
+constexpr double kHeldByFeatures = 1.25, kEnoughForFeatures = 2.5;  // times the number wanted
+
 /// Doubtful quads alone are a reason for another pass where they are few, and as long as not too many quads were extracted,
 /// of those that fit: where sheets touch there are about as many after every pass, and where each takes several tries to
 /// come near the asked count, as on broken surfaces, all passes would take minutes.
@@ -105,7 +109,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
   const ComponentPlan* plan_of_best = &planned;
   std::string broken;
   constexpr int kWorse = 2;  // times as many flawed with shorter edges: with still shorter ones there are more
-  bool any = false;
+  bool any = false, needs_more = false;  // than there are to be
   std::size_t split_in_vain = 0;  // quads of the best, where splits did not put it right
   double begin = 0, end = 0.9, extracted = 0, first_work = 0;
   const double reserve = 0.5 * budget.left;  // for the components that follow
@@ -115,6 +119,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     settings.is_rough = is_rough;
     if (any && is_only_for_flawed(settings.kind) && best.flawed_quads == 0) break;
     if (any && is_hopeless(settings, best)) continue;
+    if (needs_more && settings.quads_factor < kEnoughForFeatures) continue;
     const bool without_features = settings.kind == PassKind::kWithoutFeatures, as_needed = settings.kind == PassKind::kAsNeeded;
     if (without_features) {
       fewer_features = without_features_at(planned, flawed, options.symmetry.planes, context);
@@ -125,7 +130,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     const bool refined = !limits.empty() || settings.quads_factor != 1 || as_needed;
     const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
     const double growth = refined ? std::max(settings.quads_factor, finer.quads / plan.quads) : 1;
-    if (any && budget.left - growth * first_work < reserve) {
+    if (any && budget.left - growth * first_work < (needs_more ? 0 : reserve)) {
       best.gave_up = best.flawed_quads > 0;
       break;
     }
@@ -138,7 +143,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
       if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
       // A few splits change less than other passes, which have other quads everywhere.
       std::size_t in_vain = 0;
-      if (!any && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
+      if ((!any || needs_more) && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
         result.repairs.split_sides += put_right(&Finishing::split_flawed, unrefined, whole, wishes, options, result, clock, pass);
         if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
       }
@@ -157,7 +162,12 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
         best.passes = result.passes;
       }
       any = true;
-      if (is_in_vain || (best.doubtful_quads == 0 && best.missed_counts == 0)) break;
+      if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
+      if (is_in_vain && (needs_more || static_cast<double>(best.mesh.quads.size()) < kHeldByFeatures * count)) break;
+      if (is_in_vain) {
+        needs_more = true;
+        limits.clear();
+      }
     } catch (const InternalError& error) {
       broken = error.what();
       ++best.passes;
