@@ -1,6 +1,8 @@
 #include "hybrid_quad/pipeline/component.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/component_pass.h"
@@ -97,8 +99,39 @@ int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceInd
   return count;
 }
 
-/// Passes until one has no flawed quads; the best of them.
-ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
+double mean_shape(const QuadMesh& mesh) {
+  double sum = 0;
+  for (const auto& q : mesh.quads)
+    sum += scaled_jacobian(mesh.positions[q[0]], mesh.positions[q[1]], mesh.positions[q[2]], mesh.positions[q[3]]);
+  return sum / static_cast<double>(mesh.quads.size());
+}
+
+/// A first pass and the plan that it followed.
+struct FirstPass {
+  ComponentPlan plan;
+  ComponentResult result;
+};
+
+/// Where features by angle are shorter than quads, a pass without what crowds them tells whether quads are better off (docs/decisions/0043).
+std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
+                                             const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
+                                             const RunContext& context) {
+  constexpr double kBetter = 0.02;
+  if (!options.improve || !planned.guides.empty()) return std::nullopt;
+  FirstPass roomy{with_room_for_shapes(planned, options.symmetry.planes, context), {}};
+  if (roomy.plan.given_way == planned.given_way) return std::nullopt;
+  try {
+    const RunContext with = context.in_stage(context.stage, 0, 0.45), without = context.in_stage(context.stage, 0.45, 0.9);
+    FirstPass full{planned, run_pass(planned, whole, wishes, guides, options, kSettings[0], clock, with)};
+    roomy.result = run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, without);
+    return mean_shape(roomy.result.mesh) > mean_shape(full.result.mesh) + kBetter ? roomy : full;
+  } catch (const InternalError&) {
+    return std::nullopt;  // the passes that follow say what broke
+  }
+}
+
+/// Passes until one has no flawed quads; the best of them. \param first  the first of them, where it was made already
+ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<ComponentResult> first, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context) {
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
@@ -136,7 +169,8 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, double wanted, co
     }
     try {
       const RunContext pass = context.in_stage(context.stage, begin, end);
-      ComponentResult result = run_pass(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass);
+      ComponentResult result = first ? *std::exchange(first, std::nullopt)
+                                     : run_pass(refined ? finer : plan, whole, wishes, guides, options, settings, clock, pass);
       limits.insert(limits.end(), result.limits.begin(), result.limits.end());
       flawed.insert(flawed.end(), result.flawed_places.begin(), result.flawed_places.end());
       const ComponentPlan& unrefined = without_features ? fewer_features : planned;
@@ -216,7 +250,7 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
   for (int i = 0; i < kTries && !missed.places.empty(); ++i) {
     try {
       plan = with_corners(plan, missed.places, options.symmetry.planes, context);
-      ComponentResult result = remesh_in_passes(plan, wanted, whole, wishes, guides, options, budget, clock, context);
+      ComponentResult result = remesh_in_passes(plan, std::nullopt, wanted, whole, wishes, guides, options, budget, clock, context);
       result.passes += best.passes;
       best.passes = result.passes;
       missed = missed_loops(plan, guides, result);
@@ -245,7 +279,11 @@ ComponentPreview preview_component(const ComponentPlan& planned, double wanted, 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context) {
-  ComponentResult best = remesh_in_passes(planned, wanted, whole, wishes, guides, options, budget, clock, context);
+  const bool is_extractable = !extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
+  std::optional<FirstPass> first;
+  if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context);
+  if (first) return remesh_in_passes(first->plan, std::move(first->result), wanted, whole, wishes, guides, options, budget, clock, context);
+  ComponentResult best = remesh_in_passes(planned, std::nullopt, wanted, whole, wishes, guides, options, budget, clock, context);
   if (!planned.guides.empty() && options.improve)
     mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
   return best;

@@ -13,6 +13,11 @@ namespace {
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
 constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
+// The same of edges shorter than quads, and how far all give way where these are too many.
+constexpr double kTooShort = 0.02, kHardlyAnyShort = 0.006, kAiry = 0.15;
+
+constexpr double kOpen = 1, kClosed = 4;  ///< edges that a curve must have
+constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  ///< between features, in usual lengths
 
 double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
   double sum = 0;
@@ -24,10 +29,18 @@ double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
 /// Edges that features must have, over the number of quads: every curve one, closed ones four, long ones as many as edges
 /// of four times the usual length make. \param length  the usual one
 double crowding(const TriangleMesh& mesh, const FeatureGraph& features, double quads, double length) {
-  constexpr double kOpen = 1, kClosed = 4, kLongest = 4;
+  constexpr double kLongest = 4;
   double edges = 0;
   for (const FeatureCurve& curve : features.curves)
     edges += std::max(curve.closed ? kClosed : kOpen, length_of(mesh, curve) / (kLongest * length));
+  return edges / quads;
+}
+
+/// Edges shorter than the usual length that features must have, over the number of quads, each by how much it is shorter.
+double shortness(const TriangleMesh& mesh, const FeatureGraph& features, double quads, double length) {
+  double edges = 0;
+  for (const FeatureCurve& curve : features.curves)
+    edges += std::max(0.0, (curve.closed ? kClosed : kOpen) - length_of(mesh, curve) / length);
   return edges / quads;
 }
 
@@ -48,6 +61,22 @@ std::vector<char> firm_features(const ComponentPlan& plan) {
   return is_firm;
 }
 
+/// Takes features away, by ever wider gaps between those that stay, until there is room. \returns whether any
+template <class HasRoom>
+bool widen_gaps(ComponentPlan& plan, double length, const HasRoom& has_room) {
+  const std::vector<char> is_kept = firm_features(plan);
+  std::vector<char> remains;
+  for (const double gap : kGaps) {
+    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
+    if (has_room(trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners))) break;
+  }
+  const int before = plan.given_way;
+  take_features_away(plan, remains);
+  return plan.given_way > before;
+}
+
+double usual_length(const ComponentPlan& plan) { return std::sqrt(plan.mesh.total_area() / plan.quads); }
+
 }  // namespace
 
 void merge_double_lines(ComponentPlan& plan, double length) {
@@ -56,19 +85,19 @@ void merge_double_lines(ComponentPlan& plan, double length) {
 }
 
 bool make_room(ComponentPlan& plan) {
-  constexpr double kGaps[] = {0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1, 1.3};  // usual lengths
-  const double length = std::sqrt(plan.mesh.total_area() / plan.quads);
-  if (crowding(plan.mesh, plan.features, plan.quads, length) <= kTooCrowded) return false;
-  const std::vector<char> is_kept = firm_features(plan);
-  std::vector<char> remains;
-  for (const double gap : kGaps) {
-    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
-    const FeatureGraph fewer = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
-    if (crowding(plan.mesh, fewer, plan.quads, length) <= kRoomy) break;
-  }
-  const int before = plan.given_way;
-  take_features_away(plan, remains);
-  return plan.given_way > before;
+  const double length = usual_length(plan);
+  const auto crowding_of = [&](const FeatureGraph& features) { return crowding(plan.mesh, features, plan.quads, length); };
+  plan.was_crowded = crowding_of(plan.features) > kTooCrowded;
+  return plan.was_crowded && widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
+}
+
+bool make_room_for_shapes(ComponentPlan& plan) {
+  const double length = usual_length(plan);
+  const auto shortness_of = [&](const FeatureGraph& features) { return shortness(plan.mesh, features, plan.quads, length); };
+  const bool is_cramped = plan.was_crowded || shortness_of(plan.features) > kTooShort;
+  return is_cramped && widen_gaps(plan, length, [&](const FeatureGraph& fewer) {
+           return shortness_of(fewer) <= kHardlyAnyShort && crowding(plan.mesh, fewer, plan.quads, length) <= kAiry;
+         });
 }
 
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places) {

@@ -17,6 +17,10 @@ void merge_double_lines(ComponentPlan& plan, double length);
 /// \returns whether any
 bool make_room(ComponentPlan& plan);
 
+/// Where more than a few features are shorter than quads, or room had to be made, takes away what keeps these from having good shapes. Whether they do is to
+/// be seen: where features are all that a thin part has, it comes out the worse. \returns whether any
+bool make_room_for_shapes(ComponentPlan& plan);
+
 /// Takes away the features that pass within an edge of some places. \returns whether any
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);
 

@@ -207,6 +207,15 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
   return with;
 }
 
+ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
+  ComponentPlan roomy = plan;
+  roomy.part = -1;
+  if (!make_room_for_shapes(roomy)) return roomy;
+  plan_lengths(roomy, mirror_planes, context);
+  scale_plan(roomy, plan.quads / roomy.quads);
+  return roomy;
+}
+
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,
                                   const RunContext& context) {
   ComponentPlan without = plan;

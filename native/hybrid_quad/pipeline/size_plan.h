@@ -33,6 +33,7 @@ struct ComponentPlan {
   double least_ratio = 0;       ///< see FeatureSizeOptions
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
+  bool was_crowded = false;     ///< features by angle gave way to the number of quads
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
 };
 
@@ -61,6 +62,10 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
 
 /// The plan for as many quads with more vertices as corners, where a feature passes.
 ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes, const RunContext& context);
+
+/// The plan for as many quads with fewer features by angle, where these are cramped: more than a few are shorter than quads, or some
+/// gave way to the number already. Else the same plan.
+ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context);
 
 /// The plan for as many quads without the features by angle that pass within an edge of some places.
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes, const RunContext& context);
