@@ -6,7 +6,7 @@
 namespace hybrid_quad {
 
 void limit_lengths_of_bends(const TriangleMesh& mesh, const FeatureCurve& curve, double length, std::vector<double>& target) {
-  constexpr double kSagitta = 0.06;  // largest distance of a chord from its arc, in edge lengths
+  constexpr double kSagitta = 0.05;  // largest distance of a chord from its arc, in edge lengths
   constexpr double kLeast = 0.6;     // of the length: noise makes no short edges
   std::vector<double> arc{0};
   for (std::size_t i = 1; i < curve.vertices.size(); ++i)
