@@ -117,9 +117,10 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
                                              const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
                                              const RunContext& context) {
   constexpr double kBetter = 0.02;
+  constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
   if (!options.improve || !planned.guides.empty()) return std::nullopt;
   FirstPass roomy{with_room_for_shapes(planned, options.symmetry.planes, context), {}};
-  if (roomy.plan.given_way == planned.given_way) return std::nullopt;
+  if (roomy.plan.given_way - planned.given_way < std::max(kFewest, kWorthATrial * planned.quads)) return std::nullopt;
   try {
     const RunContext with = context.in_stage(context.stage, 0, 0.45), without = context.in_stage(context.stage, 0.45, 0.9);
     FirstPass full{planned, run_pass(planned, whole, wishes, guides, options, kSettings[0], clock, with)};
