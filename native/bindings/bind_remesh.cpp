@@ -111,6 +111,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["poor_places"] = repairs.poor_places;
   result["split_sides"] = repairs.split_sides;
   result["refined_places"] = repairs.refined_places;
+  result["reached_places"] = repairs.reached_places;
   result["raised_places"] = repairs.raised_places;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
   result["restored_quads"] = repairs.restored_quads;

@@ -114,6 +114,15 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                  const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
 
+/// Where the quads end short of the surface, as at the tips of fingers, horns and fins, which lie inside a quad once it is extracted or off
+/// which quads slip while they get better shapes: moves vertices there over the surface so that the quads come nearer to the points
+/// farthest from them. Connectivity stays; a place is kept only if its largest distance falls, no more quads are flawed or folded there, and
+/// none gets a poor shape.
+/// \param whole  as for improve_quads
+/// \returns places where the quads reach farther now; 0: nothing has moved
+int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                    const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
+
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
 /// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).

@@ -238,6 +238,7 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
 GuidePull Smoother::guide_pull(int v, double size) const {
   GuidePull sum;
   if (options_.rings != nullptr) options_.rings->add_to(sum, v, piece_.mesh.positions, vertex_normal(v), size);
+  if (options_.points != nullptr) options_.points->add_to(sum, v, piece_.mesh.positions, size);
   if (guides_.empty()) return sum;
   const Vector3 own = guides_.at(v), normal = piece_.input.normal(piece_.face[v]);
   if (own.isZero(0)) return sum;
@@ -331,10 +332,11 @@ double Smoother::move_on_curve(int v, double size) {
     return stiffness * ((ahead - t) * (ahead - t) + (behind + t) * (behind + t));
   };
   before += spring(0);
-  GuidePull rings;
-  if (options_.rings != nullptr) options_.rings->add_to(rings, v, piece_.mesh.positions, vertex_normal(v), size);
-  const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead) - 2 * rings.pull.dot(tangent);
-  double hessian = std::abs(d.hessian[0] + 4 * stiffness) + 2 * tangent.dot(rings.stiffness * tangent);
+  GuidePull pulls;
+  if (options_.rings != nullptr) options_.rings->add_to(pulls, v, piece_.mesh.positions, vertex_normal(v), size);
+  if (options_.points != nullptr) options_.points->add_to(pulls, v, piece_.mesh.positions, size);
+  const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead) - 2 * pulls.pull.dot(tangent);
+  double hessian = std::abs(d.hessian[0] + 4 * stiffness) + 2 * tangent.dot(pulls.stiffness * tangent);
   if (!(hessian > 0)) return 0;
   double t = -gradient / hessian;
   if (!std::isfinite(t) || std::abs(t) < 1e-7 * size) return 0;
@@ -343,7 +345,7 @@ double Smoother::move_on_curve(int v, double size) {
   for (int k = 0; k < kBacktracks; ++k) {
     const double target = curve.normalized(arc + t);
     const Vector3 position = curve.at(target);
-    if (energy(v, position) + spring(t) + rings.change(position - start) < before) {
+    if (energy(v, position) + spring(t) + pulls.change(position - start) < before) {
       piece_.arc[v] = target;
       piece_.mesh.positions[v] = position;
       return (position - start).norm();

@@ -7,6 +7,7 @@
 #include "hybrid_quad/frame_field/guide_map.h"
 #include "hybrid_quad/improve/asked_areas.h"
 #include "hybrid_quad/improve/corner_energy.h"
+#include "hybrid_quad/improve/point_pulls.h"
 #include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/improve/vertex_guides.h"
 #include "hybrid_quad/improve/workpiece.h"
@@ -21,6 +22,7 @@ struct SmootherOptions {
   const GuideMap* guides = nullptr;  ///< on the input, may be null
   double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape
   const RingPulls* rings = nullptr;  ///< may be null
+  const PointPulls* points = nullptr;  ///< may be null
   int threads = 1;               ///< results do not depend on it
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
 };

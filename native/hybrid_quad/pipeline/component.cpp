@@ -230,6 +230,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       best.doubtful_quads = doubtful_before;
       return 0;
     };
+    best.repairs.reached_places += put_best_right(&Finishing::reach_cut_parts);
     best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
     const int splits = put_best_right(&Finishing::split_folded);
     best.repairs.split_sides += splits;

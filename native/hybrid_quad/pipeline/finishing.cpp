@@ -104,6 +104,12 @@ int Finishing::refine_flawed(QuadMesh& mesh, const RunContext& context) const {
   return places;
 }
 
+int Finishing::reach_cut_parts(QuadMesh& mesh, const RunContext& context) const {
+  const int places = hybrid_quad::reach_cut_parts(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_);
+  if (places > 0 && asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
+  return places;
+}
+
 int Finishing::raise_shapes(QuadMesh& mesh, const RunContext& context) const {
   const int places = hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_);
   if (places > 0 && asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);

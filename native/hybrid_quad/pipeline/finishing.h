@@ -30,6 +30,8 @@ class Finishing {
   int split_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// What is left to do where no side to split helps (refine_flawed_quads). \returns places refined
   int refine_flawed(QuadMesh& mesh, const RunContext& context) const;
+  /// Tips that quads end short of (reach_cut_parts). \returns places reached
+  int reach_cut_parts(QuadMesh& mesh, const RunContext& context) const;
   /// Places around quads of poor shape (raise_shapes). \returns their number
   int raise_shapes(QuadMesh& mesh, const RunContext& context) const;
   /// Sides of quads that no places put right (split_folded_quads). \returns their number

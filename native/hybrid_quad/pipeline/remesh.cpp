@@ -276,6 +276,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   poor_places += other.poor_places;
   split_sides += other.split_sides;
   refined_places += other.refined_places;
+  reached_places += other.reached_places;
   raised_places += other.raised_places;
   opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;

@@ -89,6 +89,7 @@ struct RepairRecord {
   int poor_places = 0;  ///< around quads of poor shape, whose vertices were placed anew
   int split_sides = 0;           ///< sides of flawed or folded quads split in three, when all else was done
   int refined_places = 0;        ///< around flawed quads that were refined, where that was not enough
+  int reached_places = 0;        ///< tips that quads had ended short of
   int raised_places = 0;         ///< around quads of poor shape that got a better one in the end
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws

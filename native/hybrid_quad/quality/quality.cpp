@@ -220,6 +220,19 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
   return distance;
 }
 
+std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context) {
+  const TriangleMesh triangles = triangulated(quads);
+  const SurfaceIndex index(triangles, {}, context.threads);
+  std::vector<SurfacePoint> out(points.size());
+  parallel_chunks(static_cast<int>(points.size()), context, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      out[i] = index.nearest(points[i]);
+      out[i].face /= 2;
+    }
+  });
+  return out;
+}
+
 DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex& to, const RunContext& context, int samples) {
   const Tally tally = one_sided_distance(from, to, samples, context);
   return {tally.largest, tally.sum};

@@ -71,6 +71,10 @@ struct SurfaceDistance {
   double hausdorff() const { return quads_to_input_max > input_to_quads_max ? quads_to_input_max : input_to_quads_max; }
 };
 
+/// For each point the nearest place on the quads (each split along its first diagonal); `face` is a quad.
+/// \pre `quads` is valid (violations_of)
+std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context);
+
 /// Symmetric distance between the quads (each split along its first diagonal) and the input, from evenly spread samples
 /// and the vertices of both. The same for any number of threads.
 /// \pre `quads` is valid (violations_of)
