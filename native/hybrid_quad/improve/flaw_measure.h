@@ -26,13 +26,16 @@ class FlawMeasure {
     constexpr int kBeyondDoubt = 1000;
     constexpr double kLeastArea = 1e-9;
     const std::array<Vector3, 4> p = corners(q);
-    if (q >= static_cast<int>(known_.size())) known_.resize(q + 1);
+    if (q >= static_cast<int>(known_.size())) {
+      known_.resize(q + 1);
+      near_face_.resize(q + 1, -1);
+    }
     std::array<Known, 2>& known = known_[q];
     if (known[0].corners == p) return known[0].flaws;
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].flaws;
     const double least_area = kLeastArea * piece_.h * piece_.h;
-    known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_)};
+    known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &near_face_[q])};
     if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_))) known[0].flaws = kBeyondDoubt;
     return known[0].flaws;
   }
@@ -40,6 +43,7 @@ class FlawMeasure {
   /// Learns of all quads, on all threads, which of them are flawed.
   void look_at_all(const RunContext& context) const {
     known_.resize(piece_.mesh.quad_count());
+    near_face_.resize(piece_.mesh.quad_count(), -1);
     parallel_chunks(piece_.mesh.quad_count(), context, [&](int begin, int end) {
       for (int q = begin; q < end; ++q)
         if (piece_.mesh.alive(q)) is_flawed(q);
@@ -84,6 +88,7 @@ class FlawMeasure {
   Agreement agreement_;
   const Agreement* least_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
+  mutable std::vector<int> near_face_;               ///< #Q: nearest to where the quad was last, -1 if unknown
 };
 
 }  // namespace hybrid_quad

@@ -81,10 +81,11 @@ void ShapeDescent::descend(const DescentPlan& plan) {
   }
 }
 
-double ShapeDescent::energy(int v) const {
+double ShapeDescent::energy(int v, double enough) const {
   double sum = 0;
   const auto& p = piece_.mesh.positions;
   for (const int q : piece_.mesh.quads_at(v)) {
+    if (sum >= enough) break;
     const EditMesh::Quad& c = piece_.mesh.quad(q);
     Vector3 normal = (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]);
     const double length = normal.norm();
@@ -99,29 +100,32 @@ double ShapeDescent::energy(int v) const {
   return sum;
 }
 
-int ShapeDescent::flaws_at(int v) const {
+int ShapeDescent::flaws_at(int v, int enough) const {
   int flaws = 0;
-  for (const int q : piece_.mesh.quads_at(v)) flaws += measure_.flaws(q);
+  for (const int q : piece_.mesh.quads_at(v)) {
+    flaws += measure_.flaws(q);
+    if (flaws >= enough) break;
+  }
   return flaws;
 }
 
 /// To the best place that leaves no more flaws at v: a sine by the quad's own normal does not tell that it is turned over.
 /// \returns whether one is better than where v is
 bool ShapeDescent::move(int v, double step) {
-  const double now = energy(v);
+  const double now = energy(v, std::numeric_limits<double>::infinity());
   const VertexPlace here = piece_.place_of(v);
   std::vector<std::pair<double, VertexPlace>> better;
   for (const VertexPlace& place : places_at(v, step)) {
     piece_.put(v, place);
-    if (const double there = energy(v); there < now) better.emplace_back(there, place);
+    if (const double there = energy(v, now); there < now) better.emplace_back(there, place);
   }
   piece_.put(v, here);
   if (better.empty()) return false;
-  const int flaws = flaws_at(v);
+  const int flaws = flaws_at(v, std::numeric_limits<int>::max());
   std::stable_sort(better.begin(), better.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   for (const auto& [there, place] : better) {
     piece_.put(v, place);
-    if (flaws_at(v) <= flaws) return true;
+    if (flaws_at(v, flaws + 1) <= flaws) return true;
   }
   piece_.put(v, here);
   return false;

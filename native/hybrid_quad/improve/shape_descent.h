@@ -51,8 +51,9 @@ class ShapeDescent {
 
  private:
   bool move(int v, double step);
-  double energy(int v) const;
-  int flaws_at(int v) const;
+  /// \param enough  what is no less than this may be anything from it on
+  double energy(int v, double enough) const;
+  int flaws_at(int v, int enough) const;
   std::vector<VertexPlace> places_at(int v, double step) const;
 
   Workpiece& piece_;

@@ -139,7 +139,7 @@ std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test)
 
 }  // namespace
 
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement) {
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement, int* face) {
   constexpr double kReach = 0.28, kTouches = 1e-6;
   Vector3 normal = area_vector(corners);
   const double area = normal.norm();
@@ -151,7 +151,10 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
     centre += 0.25 * corners[i];
     size += 0.25 * (corners[(i + 1) % 4] - corners[i]).norm();
   }
-  const SurfacePoint near = surface.nearest(centre);
+  SurfaceIndex::Filter filter;
+  if (face) filter.hint = *face;
+  const SurfacePoint near = surface.nearest(centre, filter);
+  if (face) *face = near.face;
   if (near.face < 0 || !points_against(surface, centre, near, normal, kTouches * size)) return false;
   const double distance = std::sqrt(near.squared_distance);
   const Ball ball{centre, distance + kReach * size};
@@ -163,8 +166,8 @@ std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surfac
   return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, agreement); });
 }
 
-bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement) {
-  return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement);
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement, int* face) {
+  return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement, face);
 }
 
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
