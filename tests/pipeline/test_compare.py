@@ -49,13 +49,13 @@ def test_chord_error_of_a_circle_is_its_sagitta_and_of_a_box_nothing():
 def _ours(**changes):
     values = {
         "quads": 2000, "irregular": 20, "jacobian_mean": 0.98, "jacobian_p1": 0.8, "jacobian_min": 0.5,
-        "distance": 0.02, "feature": 0.2, "seconds": 1.0, "singularities": 20,
+        "distance": 0.02, "largest": 0.5, "feature": 0.2, "seconds": 1.0, "singularities": 20,
     }  # fmt: skip
     return Result("hybrid-quad", "valid", True, **{**values, **changes})
 
 
 def _case(ours, chord=0.2):
-    peer = Result("QuadWild-BiMDF", "valid", False, quads=2000, irregular=20, distance=0.03, feature=0.3)
+    peer = Result("QuadWild-BiMDF", "valid", False, quads=2000, irregular=20, distance=0.03, largest=0.6, feature=0.3)
     return Case("part", 2000, True, chord, [ours, peer])
 
 
@@ -74,6 +74,7 @@ def test_all_targets_are_met_by_what_is_as_good():
         {"jacobian_min": 0.2},
         {"jacobian_min": 0.0},
         {"distance": 0.04},
+        {"largest": 0.7},
         {"feature": 0.31},
     ],
     ids=str,
