@@ -285,10 +285,8 @@ class Reaching {
 int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                     const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   if (quads.quads.empty()) return 0;
-  constexpr int kPointsPerQuad = 32;  // no more are asked about, however fine the input
-  const int step = 1 + input.vertex_count() / (kPointsPerQuad * static_cast<int>(quads.quads.size()));
-  std::vector<Vector3> points;
-  for (int v = 0; v < input.vertex_count(); v += step) points.push_back(input.position(v));
+  std::vector<Vector3> points(input.vertex_count());
+  for (int v = 0; v < input.vertex_count(); ++v) points[v] = input.position(v);
   const std::vector<SurfacePoint> nearest = nearest_on_quads(points, quads, context);
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
