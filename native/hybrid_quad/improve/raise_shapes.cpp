@@ -12,13 +12,17 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   constexpr double kPoor = 0.2;
   constexpr int kMostRings = 3;
   constexpr int kLeastEffort = 2000, kEffort = 4;  // vertices moved down, and for every vertex of the mesh
+  std::vector<std::pair<double, int>> poor;
+  for (int q = 0; q < static_cast<int>(quads.quads.size()); ++q) {
+    const auto& v = quads.quads[q];
+    const auto& p = quads.positions;
+    if (const double shape = scaled_jacobian(p[v[0]], p[v[1]], p[v[2]], p[v[3]]); shape < kPoor) poor.emplace_back(shape, q);
+  }
+  if (poor.empty()) return 0;
+  std::sort(poor.begin(), poor.end());
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
-  std::vector<std::pair<double, int>> poor;
-  for (int q = 0; q < piece.mesh.quad_count(); ++q)
-    if (const double shape = shape_of(piece.mesh, q); shape < kPoor) poor.emplace_back(shape, q);
-  if (poor.empty() || !(piece.h > 0)) return 0;
-  std::sort(poor.begin(), poor.end());
+  if (!(piece.h > 0)) return 0;
   piece.locate_all();
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();

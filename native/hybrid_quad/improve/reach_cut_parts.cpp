@@ -23,12 +23,13 @@ struct Witness {
   double distance;  ///< in edges of that quad
 };
 
-double edge_of(const EditMesh& mesh, int q) {
-  const EditMesh::Quad& v = mesh.quad(q);
+double mean_edge(const EditMesh::Quad& v, const std::vector<Vector3>& positions) {
   double sum = 0;
-  for (int i = 0; i < 4; ++i) sum += (mesh.positions[v[i]] - mesh.positions[v[(i + 1) & 3]]).norm();
+  for (int i = 0; i < 4; ++i) sum += (positions[v[i]] - positions[v[(i + 1) & 3]]).norm();
   return sum / 4;
 }
+
+double edge_of(const EditMesh& mesh, int q) { return mean_edge(mesh.quad(q), mesh.positions); }
 
 /// Of points from quads, in edge lengths.
 struct Distances {
@@ -56,6 +57,7 @@ class QuadSet {
     double distance = std::numeric_limits<double>::infinity();
   };
   Place nearest(const Vector3& p) const {
+    constexpr double kLess = 1 - 1e-9;  // of what rounding alone tells apart, as on an edge of two quads, the first is taken
     Place best;
     for (const Ball& ball : balls_) {
       if ((ball.centre - p).norm() - ball.radius > best.distance) continue;
@@ -64,7 +66,7 @@ class QuadSet {
         const Vector3 at =
             nearest_on_triangle(p, mesh_.positions[v[0]], mesh_.positions[v[second]], mesh_.positions[v[second + 1]]);
         const double distance = (at - p).norm();
-        if (distance < best.distance) best = {ball.quad, second, at, distance};
+        if (distance < kLess * best.distance) best = {ball.quad, second, at, distance};
       }
     }
     return best;
@@ -288,17 +290,20 @@ int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGra
   std::vector<Vector3> points(input.vertex_count());
   for (int v = 0; v < input.vertex_count(); ++v) points[v] = input.position(v);
   const std::vector<SurfacePoint> nearest = nearest_on_quads(points, quads, context);
-  Workpiece piece(quads, input, features, index);
-  if (options.target_length > 0) piece.h = options.target_length;
-  if (!(piece.h > 0)) return 0;
+  std::vector<double> edge;
+  for (const auto& quad : quads.quads) edge.push_back(mean_edge(quad, quads.positions));
   std::vector<Witness> witnesses;
   bool any = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (nearest[i].face < 0) continue;
-    witnesses.push_back({points[i], nearest[i].face, std::sqrt(nearest[i].squared_distance) / edge_of(piece.mesh, nearest[i].face)});
+    const int quad = nearest[i].face;
+    if (quad < 0) continue;
+    witnesses.push_back({points[i], quad, std::sqrt(nearest[i].squared_distance) / edge[quad]});
     any = any || witnesses.back().distance > kFar;
   }
   if (!any) return 0;
+  Workpiece piece(quads, input, features, index);
+  if (options.target_length > 0) piece.h = options.target_length;
+  if (!(piece.h > 0)) return 0;
   piece.locate_all();
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   const int reached = Reaching(piece, measure, options, std::move(witnesses), context.threads).run(context);
