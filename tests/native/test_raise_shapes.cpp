@@ -19,17 +19,11 @@ int id(int i, int j) { return (kSide + 1) * j + i; }
 
 /// A flat square with even quads.
 struct Square {
-  Square() : input(test::flat_grid(kSide, kSide, kSide, kSide)), features(detect_features(input, FeatureOptions{}, RunContext{})), index(input, features.face_region) {
-    for (int j = 0; j <= kSide; ++j)
-      for (int i = 0; i <= kSide; ++i) {
-        quads.positions.emplace_back(i, j, 0);
-        quads.kind.push_back(VertexKind::kFree);
-        quads.anchor.push_back(features.face_region[0]);
-        quads.near_face.push_back(-1);
-      }
-    for (int j = 0; j < kSide; ++j)
-      for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
-  }
+  Square()
+      : input(test::flat_grid(kSide, kSide, kSide, kSide)),
+        features(detect_features(input, FeatureOptions{}, RunContext{})),
+        index(input, features.face_region),
+        quads(test::even_quads(kSide, features.face_region[0])) {}
   int raise() { return raise_shapes(quads, input, features, index, ImproveOptions{}, RunContext{}); }
 
   TriangleMesh input;

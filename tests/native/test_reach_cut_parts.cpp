@@ -25,10 +25,8 @@ TriangleMesh horn(double height, double radius) {
     positions.push_back(p);
   }
   std::vector<std::array<int, 3>> faces;
-  std::vector<int> opposite;
   for (int f = 0; f < flat.face_count(); ++f) faces.push_back(flat.face(f));
-  for (int h = 0; h < flat.halfedge_count(); ++h) opposite.push_back(flat.opposite(h));
-  return TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
+  return TriangleMesh(std::move(positions), std::move(faces));
 }
 
 FeatureGraph boundary_of(const TriangleMesh& mesh) {
@@ -39,18 +37,11 @@ FeatureGraph boundary_of(const TriangleMesh& mesh) {
 
 /// Even quads whose vertices are around the horn's foot.
 struct CutHorn {
-  explicit CutHorn(double height) : input(horn(height, 0.7)), features(boundary_of(input)), index(input, features.face_region) {
-    for (int j = 0; j <= kSide; ++j)
-      for (int i = 0; i <= kSide; ++i) {
-        quads.positions.emplace_back(i, j, 0);
-        quads.kind.push_back(VertexKind::kFree);
-        quads.anchor.push_back(features.face_region[0]);
-        quads.near_face.push_back(-1);
-      }
-    for (int j = 0; j < kSide; ++j)
-      for (int i = 0; i < kSide; ++i) quads.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
-  }
-  static int id(int i, int j) { return (kSide + 1) * j + i; }
+  explicit CutHorn(double height)
+      : input(horn(height, 0.7)),
+        features(boundary_of(input)),
+        index(input, features.face_region),
+        quads(test::even_quads(kSide, features.face_region[0])) {}
   int reach(int threads = 1) {
     RunContext context;
     context.threads = threads;

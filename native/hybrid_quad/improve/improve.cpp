@@ -9,6 +9,7 @@
 #include "hybrid_quad/improve/requadrangulate.h"
 #include "hybrid_quad/improve/restoration.h"
 #include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/smoothing_options.h"
 #include "hybrid_quad/improve/spread_along_bends.h"
 #include "hybrid_quad/improve/untangle.h"
 #include "hybrid_quad/improve/valence_moves.h"
@@ -50,18 +51,6 @@ void bind(Workpiece& piece) {
   constexpr double kCurvatureWeight = 20;
   piece.bind_all();
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
-}
-
-SmootherOptions smoothing_of(const ImproveOptions& options, int threads) {
-  SmootherOptions smoothing;
-  smoothing.chord_spring = options.chord_spring;
-  smoothing.aspect_power = options.aspect_power;
-  smoothing.area_weight = options.area_weight;
-  smoothing.asked_lengths = options.asked_lengths;
-  smoothing.guides = options.guides;
-  smoothing.rings = options.rings;
-  smoothing.threads = threads;
-  return smoothing;
 }
 
 /// One round of everything; quads in `locked` stay as they are.

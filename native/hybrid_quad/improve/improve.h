@@ -116,8 +116,9 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
 
 /// Where the quads end short of the surface, as at the tips of fingers, horns and fins, which lie inside a quad once it is extracted or off
 /// which quads slip while they get better shapes: moves vertices there over the surface so that the quads come nearer to the points
-/// farthest from them. Connectivity stays; a place is kept only if its largest distance falls, no more quads are flawed or folded there, and
-/// none gets a poor shape.
+/// farthest from them. Connectivity stays; a place is kept only if a fifth of what is more than near is gone there (squares of distances, summed), its
+/// largest distance is no larger, no more quads are flawed or folded, and none has a scaled Jacobian below 0.4 and the worst before
+/// (docs/decisions/0044).
 /// \param whole  as for improve_quads
 /// \returns places where the quads reach farther now; 0: nothing has moved
 int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,

@@ -14,8 +14,8 @@ class PointPulls {
   struct Pull {
     Vector3 point = Vector3::Zero();
     std::array<int, 4> vertices{-1, -1, -1, -1};  ///< of a quad
-    std::array<double, 4> shares{0, 0, 0, 0};  ///< by which they give the place; their sum is 1
-    double weight = 0;                      ///< of the squared distance, in edge lengths
+    std::array<double, 4> shares{0, 0, 0, 0};     ///< by which they give the place; their sum is 1
+    double weight = 0;                            ///< of the squared distance, in edge lengths
   };
 
   void clear();

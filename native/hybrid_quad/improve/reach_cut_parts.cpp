@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 #include <vector>
 
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/point_pulls.h"
+#include "hybrid_quad/improve/quad_set.h"
 #include "hybrid_quad/improve/shape_descent.h"
 #include "hybrid_quad/improve/smoother.h"
+#include "hybrid_quad/improve/smoothing_options.h"
 
 namespace hybrid_quad {
 
@@ -37,60 +39,16 @@ struct Distances {
   double excess = 0;  ///< squares of what is more than near, summed
 };
 
-/// Some quads as they are, to be asked for the nearest of them.
-class QuadSet {
- public:
-  QuadSet(const EditMesh& mesh, const std::vector<int>& quads) : mesh_(mesh) {
-    for (const int q : quads) {
-      const EditMesh::Quad& v = mesh.quad(q);
-      Ball ball{q, Vector3::Zero(), 0};
-      for (const int corner : v) ball.centre += 0.25 * mesh.positions[corner];
-      for (const int corner : v) ball.radius = std::max(ball.radius, (mesh.positions[corner] - ball.centre).norm());
-      balls_.push_back(ball);
-    }
+/// \param edge  a length (scene units) to tell distances in
+Distances distances_of(const std::vector<Vector3>& points, const QuadSet& quads, double edge) {
+  Distances out;
+  for (const Vector3& p : points) {
+    const double distance = quads.nearest(p).distance / edge;
+    out.largest = std::max(out.largest, distance);
+    out.excess += std::pow(std::max(0.0, distance - kNear), 2);
   }
-
-  struct Place {
-    int quad = -1;
-    int second = 1;  ///< the place is on the triangle of corners 0, this one and the next
-    Vector3 position = Vector3::Zero();
-    double distance = std::numeric_limits<double>::infinity();
-  };
-  Place nearest(const Vector3& p) const {
-    constexpr double kLess = 1 - 1e-9;  // of what rounding alone tells apart, as on an edge of two quads, the first is taken
-    Place best;
-    for (const Ball& ball : balls_) {
-      if ((ball.centre - p).norm() - ball.radius > best.distance) continue;
-      const EditMesh::Quad& v = mesh_.quad(ball.quad);
-      for (const int second : {1, 2}) {
-        const Vector3 at =
-            nearest_on_triangle(p, mesh_.positions[v[0]], mesh_.positions[v[second]], mesh_.positions[v[second + 1]]);
-        const double distance = (at - p).norm();
-        if (distance < kLess * best.distance) best = {ball.quad, second, at, distance};
-      }
-    }
-    return best;
-  }
-
-  Distances distances_of(const std::vector<Vector3>& points, double edge) const {
-    Distances out;
-    for (const Vector3& p : points) {
-      const double distance = nearest(p).distance / edge;
-      out.largest = std::max(out.largest, distance);
-      out.excess += std::pow(std::max(0.0, distance - kNear), 2);
-    }
-    return out;
-  }
-
- private:
-  struct Ball {
-    int quad;
-    Vector3 centre;
-    double radius;
-  };
-  const EditMesh& mesh_;
-  std::vector<Ball> balls_;
-};
+  return out;
+}
 
 /// Half of the pull acts on the place, half on the quad as a whole: by the place alone a single corner gets ahead of the others, and
 /// the quad becomes a spike.
@@ -115,7 +73,7 @@ PointPulls::Pull pull_of(const EditMesh& mesh, const QuadSet::Place& place, cons
 class Reaching {
  public:
   Reaching(Workpiece& piece, const FlawMeasure& measure, const ImproveOptions& options, std::vector<Witness> witnesses, int threads)
-      : piece_(piece), measure_(measure), witnesses_(std::move(witnesses)), smoother_(piece, smoothing_of(options, threads)) {
+      : piece_(piece), measure_(measure), witnesses_(std::move(witnesses)), smoother_(piece, smoothing_with_pulls(options, threads)) {
     of_quad_.resize(piece.mesh.quad_count());
     for (int i = 0; i < static_cast<int>(witnesses_.size()); ++i) of_quad_[witnesses_[i].quad].push_back(i);
   }
@@ -154,15 +112,9 @@ class Reaching {
   };
   using Pulling = void (Reaching::*)(const Site&);
 
-  SmootherOptions smoothing_of(const ImproveOptions& options, int threads) {
-    SmootherOptions smoothing;
-    smoothing.chord_spring = options.chord_spring;
-    smoothing.aspect_power = options.aspect_power;
-    smoothing.area_weight = options.area_weight;
-    smoothing.asked_lengths = options.asked_lengths;
-    smoothing.guides = options.guides;
+  SmootherOptions smoothing_with_pulls(const ImproveOptions& options, int threads) {
+    SmootherOptions smoothing = smoothing_of(options, threads);
     smoothing.points = &pulls_;
-    smoothing.threads = threads;
     return smoothing;
   }
 
@@ -224,7 +176,7 @@ class Reaching {
       (this->*pull)(site);
       smoother_.relax(site.vertices, kSweeps, kEps);
       effort -= kSweeps * static_cast<int>(site.vertices.size());
-      if (step + 1 == kStepsToTell || step + 1 == kSteps) now = QuadSet(piece_.mesh, site.quads).distances_of(site.points, site.edge);
+      if (step + 1 == kStepsToTell || step + 1 == kSteps) now = distances_of(site.points, QuadSet(piece_.mesh, site.quads), site.edge);
     }
     if (now.largest > site.before.largest || now.excess > kGain * site.before.excess) return site.before;
     const Shapes shapes = shapes_of(piece_.mesh, site.quads, measure_);
@@ -254,7 +206,7 @@ class Reaching {
     site.points = points_at(site.quads);
     const QuadSet untouched(piece_.mesh, site.quads);
     if (untouched.nearest(target.point).distance < kFar * site.edge) return false;  // reached along with another
-    site.before = untouched.distances_of(site.points, site.edge);
+    site.before = distances_of(site.points, untouched, site.edge);
     site.shapes = shapes_of(piece_.mesh, site.quads, measure_);
     const std::vector<VertexPlace> old = places_of(vertices);
     std::vector<VertexPlace> best = old;

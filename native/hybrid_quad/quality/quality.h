@@ -74,7 +74,8 @@ struct SurfaceDistance {
   double hausdorff() const { return quads_to_input_max > input_to_quads_max ? quads_to_input_max : input_to_quads_max; }
 };
 
-/// For each point the nearest place on the quads (each split along its first diagonal); `face` is a quad.
+/// For each point (scene units) the nearest place on the quads, each split along its first diagonal; `face` is a quad. #points, in
+/// their order, the same for any number of threads.
 /// \pre `quads` is valid (violations_of)
 std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context);
 

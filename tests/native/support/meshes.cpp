@@ -36,6 +36,23 @@ TriangleMesh flat_grid(int n, int m, double width, double height) {
   return TriangleMesh(std::move(p), std::move(f));
 }
 
+QuadMesh even_quads(int n, int region) {
+  QuadMesh quads;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      quads.positions.emplace_back(i, j, 0);
+      quads.kind.push_back(VertexKind::kFree);
+      quads.anchor.push_back(region);
+      quads.near_face.push_back(-1);
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i;
+      quads.quads.push_back({a, a + 1, a + n + 2, a + n + 1});
+    }
+  return quads;
+}
+
 TriangleMesh box(int n, const Vector3& size) {
   std::vector<Vector3> p;
   std::vector<std::array<int, 3>> f;

@@ -4,12 +4,15 @@
 #include <vector>
 
 #include "hybrid_quad/mesh/mesh_builder.h"
+#include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad::test {
 
 /// The rectangle [0, width] x [0, height] in n x m cells of two triangles, normal +z.
 TriangleMesh flat_grid(int n, int m, double width = 1, double height = 1);
+/// The square [0, n] x [0, n] in unit quads, row by row; all vertices free, in a region.
+QuadMesh even_quads(int n, int region);
 /// The box [0, size] with n x n cells on every side, normals outwards.
 TriangleMesh box(int n, const Vector3& size = Vector3(1, 1, 1));
 /// Icosahedron subdivided `levels` times, vertices on the sphere about the origin.
