@@ -138,7 +138,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
                              const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
-  constexpr double kLongestEdge = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
+  constexpr double kLongestEdge = 1.25, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
   constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
   // Halves of a needle are three needles, so that a surface thin as a hair becomes far more pieces than its edges do.
   constexpr double kSplitsPerPiece = 2;
