@@ -107,7 +107,7 @@ class ComponentRemesher {
     };
     Checked checked = clock_.measure("working surface", [&] {
       return recalled_for_plan(StageCache::Level::kPlan, "working surface", [&] {
-        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_),
+        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_, plan_.quads),
                                            context_.in_stage("working surface", 0, 0.2)), {}};
         made.violations = violations_of(made.surface, mesh_, plan_.features);
         return made;
