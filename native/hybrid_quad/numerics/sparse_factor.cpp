@@ -5,7 +5,7 @@
 namespace hybrid_quad {
 
 SparseFactor::SparseFactor(const SparseMatrix& lower, const std::vector<Vector3>& places, const RunContext& context) {
-  constexpr Eigen::Index kMostByColumns = 20000;
+  constexpr Eigen::Index kMostByColumns = 4000;
   if (!places.empty() && lower.rows() > kMostByColumns) {
     by_fronts_ = std::make_unique<MultifrontalCholesky>(lower, places, context);
     return;

@@ -9,7 +9,7 @@
 
 namespace hybrid_quad {
 
-/// A factorization of a symmetric positive definite matrix whose unknowns lie on a surface. Up to twenty thousand
+/// A factorization of a symmetric positive definite matrix whose unknowns lie on a surface. Up to four thousand
 /// unknowns by columns in minimum-degree order, which fills in least; beyond that multifrontal, which gets several
 /// times as fast with size.
 class SparseFactor {
