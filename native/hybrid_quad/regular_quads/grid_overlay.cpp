@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "hybrid_quad/mesh/bucket_sort.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -18,9 +20,18 @@ struct EdgePoint {
   int vertex;
 };
 
-std::int64_t floor_div(Wide a, Wide b) {
-  const Wide q = a / b;
+template <class Integer>
+std::int64_t floor_quotient(Integer a, Integer b) {
+  const Integer q = a / b;
   return static_cast<std::int64_t>(a % b != 0 && ((a < 0) != (b < 0)) ? q - 1 : q);
+}
+
+bool is_narrow(Wide x) { return x == static_cast<std::int64_t>(x); }
+
+/// Nearly all are short enough for the processor's own division, which takes a fraction of the time.
+std::int64_t floor_div(Wide a, Wide b) {
+  if (is_narrow(a) && is_narrow(b)) return floor_quotient(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b));
+  return floor_quotient(a, b);
 }
 
 /// Place of a coordinate among the integer lines: 2 k on line k, 2 k + 1 strictly between lines k and k + 1.
@@ -38,6 +49,11 @@ struct Corner {
   int halfedge;  ///< surface half-edge that the side to the next corner lies on, -1 inside the face
 };
 using Polygon = std::vector<Corner>;
+
+/// Where an edge crosses an integer line, as a fraction of it.
+struct Crossing {
+  std::int64_t num, den;
+};
 
 class OverlayBuilder {
  public:
@@ -120,10 +136,8 @@ class OverlayBuilder {
     const int side = own ? h : o;
     const GridVector& start = param_.corner_uv[side];
     const GridVector& d = param_.halfedge_uv[side];
-    struct Crossing {
-      std::int64_t num, den;
-    };
-    std::vector<Crossing> crossings;
+    std::vector<Crossing>& crossings = crossings_;
+    crossings.clear();
     for (int axis = 0; axis < 2; ++axis) {
       if (d[axis] == 0) continue;
       const std::int64_t a = start[axis], b = a + d[axis];
@@ -166,6 +180,7 @@ class OverlayBuilder {
   /// The face's border with all cut points, counterclockwise.
   Polygon border_of(int f) const {
     Polygon polygon;
+    polygon.reserve(16);
     for (int i = 0; i < 3; ++i) {
       const int h = 3 * f + i, o = mesh_.opposite(h);
       const GridVector& a = param_.corner_uv[h];
@@ -305,8 +320,8 @@ class OverlayBuilder {
       const int a = out_.origin[k], b = out_.target(k);
       entries[k] = {std::min(a, b), std::max(a, b), k};
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) {
-      return std::tie(x.low, x.high, x.halfedge) < std::tie(y.low, y.high, y.halfedge);
+    bucket_sort(entries, [](const Entry& x) { return x.low; }, [](const Entry& x, const Entry& y) {
+      return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge);
     });
     out_.opposite.assign(n, -1);
     for (int i = 0; i < n;) {
@@ -340,6 +355,7 @@ class OverlayBuilder {
   GridOverlay out_;
   std::vector<char> cuttable_;
   std::vector<std::vector<EdgePoint>> edge_points_;
+  std::vector<Crossing> crossings_;  ///< of one edge
   std::vector<std::tuple<std::int64_t, std::int64_t, int>> chord_points_;
 };
 
