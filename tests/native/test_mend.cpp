@@ -232,7 +232,7 @@ TEST(PlaceSearch, LeavesCornersWhereTheyAre) {
 TEST(Restoration, LocksAroundNewFlawsOnly) {
   Sheet sheet;
   Restoration restoration(sheet.quads, sheet.index, {1.0});
-  EXPECT_EQ(restoration.flawed_before(), 0);
+  EXPECT_EQ(restoration.flawed_count(), 0);
   QuadMesh worse = sheet.quads;
   std::swap(worse.positions[Sheet::id(5, 5)], worse.positions[Sheet::id(7, 5)]);
   const std::vector<int> flawed = flawed_quads(worse, sheet.index, {1.0});
@@ -245,7 +245,7 @@ TEST(Restoration, LocksAroundNewFlawsOnly) {
 
   // What was flawed from the start is no place to go back to.
   Restoration hopeless(worse, sheet.index, {1.0});
-  EXPECT_EQ(hopeless.flawed_before(), static_cast<int>(flawed.size()));
+  EXPECT_EQ(hopeless.flawed_count(), static_cast<int>(flawed.size()));
   EXPECT_FALSE(hopeless.give_up_around(worse, flawed));
 }
 

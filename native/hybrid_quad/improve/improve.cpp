@@ -1,6 +1,7 @@
 #include "hybrid_quad/improve/improve.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
@@ -142,19 +143,25 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   if (quads.quads.empty() || input.face_count() == 0) return {};
   constexpr int kAttempts = 5;
   const SurfaceIndex& judged = whole ? *whole : index;
-  Restoration restoration(quads, judged, options.agreement, context.threads);
+  // Only where something is flawed does it matter what was before.
+  std::optional<Restoration> restoration;
+  const auto before = [&]() -> Restoration& {
+    if (!restoration) restoration.emplace(quads, judged, options.agreement, context.threads);
+    return *restoration;
+  };
+  const std::vector<char> none(quads.quads.size(), 0);
   QuadMesh best;
   ImproveReport report;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     QuadMesh improved = quads;
-    ImproveReport now = improve_once(improved, restoration.locked(), input, features, index, judged, options, context);
+    const std::vector<char>& locked = restoration ? restoration->locked() : none;
+    ImproveReport now = improve_once(improved, locked, input, features, index, judged, options, context);
     const std::vector<int> flawed = flawed_quads(improved, judged, options.agreement, context.threads);
-    now.flawed_before = restoration.flawed_before();
     now.flawed_after = static_cast<int>(flawed.size());
-    now.restored_quads = restoration.locked_count();
+    now.restored_quads = restoration ? restoration->locked_count() : 0;
     const bool is_better = attempt == 0 || now.flawed_after < report.flawed_after;
     const bool go_on = is_worth_another_attempt(now.flawed_after, improved.quads.size()) && is_better &&
-                       restoration.give_up_around(improved, flawed);
+                       before().give_up_around(improved, flawed);
     if (is_better) {
       best = std::move(improved);
       report = now;
@@ -163,9 +170,10 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
   }
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;
-  if (report.flawed_after > report.flawed_before || area_of(best) < kLeastArea * std::min(area_of(quads), input.total_area())) {
+  const bool has_slipped = area_of(best) < kLeastArea * std::min(area_of(quads), input.total_area());
+  if (has_slipped || (report.flawed_after > 0 && report.flawed_after > before().flawed_count())) {
     report.connectivity_moves = 0;
-    report.flawed_after = report.flawed_before;
+    report.flawed_after = before().flawed_count();
     report.restored_quads = static_cast<int>(quads.quads.size());
     return report;
   }

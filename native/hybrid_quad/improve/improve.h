@@ -29,7 +29,7 @@ struct ImproveOptions {
 struct ImproveReport {
   int connectivity_moves = 0;
   int inverted_after = 0;
-  int flawed_before = 0, flawed_after = 0;  ///< flawed_quads
+  int flawed_after = 0;  ///< flawed_quads
   int mended = 0;                  ///< changes that only flawed quads called for
   int placed = 0;  ///< places around quads of poor shape that were searched anew with success
   int restored_quads = 0;          ///< quads left as they were extracted, where improving them brought flaws

@@ -20,7 +20,7 @@ Restoration::Restoration(const QuadMesh& extracted, const SurfaceIndex& index, c
     : locked_(extracted.quads.size(), 0), flawed_(extracted.quads.size(), 0) {
   for (const int q : flawed_quads(extracted, index, agreement, threads)) {
     flawed_[q] = 1;
-    ++flawed_before_;
+    ++flawed_count_;
   }
   for (int q = 0; q < static_cast<int>(extracted.quads.size()); ++q) {
     centre_.push_back(middle_of(extracted, q));

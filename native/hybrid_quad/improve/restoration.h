@@ -15,7 +15,7 @@ class Restoration {
  public:
   Restoration(const QuadMesh& extracted, const SurfaceIndex& index, const Agreement& agreement, int threads = 1);
 
-  int flawed_before() const { return flawed_before_; }
+  int flawed_count() const { return flawed_count_; }  ///< of the extracted quads
   const std::vector<char>& locked() const { return locked_; }  ///< #Q of the extracted mesh
   int locked_count() const;
   /// Locks extracted quads near flawed ones of the improved mesh, further around where that was tried before.
@@ -26,7 +26,7 @@ class Restoration {
   std::vector<Vector3> centre_;
   std::vector<double> reach_;        // how far a quad extends from its centre
   std::vector<char> locked_, flawed_;
-  int flawed_before_ = 0;
+  int flawed_count_ = 0;
   double mean_edge_ = 0;
   int rounds_ = 0;
 };
