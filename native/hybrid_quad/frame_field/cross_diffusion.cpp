@@ -8,21 +8,24 @@ namespace {
 
 constexpr double kTiny = 1e-300;
 
-/// The linear operator (diagonal + mass) - links.
-void apply(const CrossSystem& system, const std::vector<double>& mass, const std::vector<Complex>& x, std::vector<Complex>& y) {
-  for (int i = 0; i < system.size(); ++i) y[i] = (system.diagonal[i] + mass[i]) * x[i];
-  for (const CrossLink& link : system.links) {
-    y[link.to] -= times(link.weight, x[link.from]);
-    y[link.from] -= times(std::conj(link.weight), x[link.to]);
+/// The linear operator (diagonal + mass) - links. \returns the real part of x^H y
+double apply(const CrossLevel& level, const std::vector<double>& mass, const std::vector<Complex>& x, std::vector<Complex>& y) {
+  double dot = 0;
+  for (int i = 0; i < level.system.size(); ++i) {
+    Complex sum = (level.system.diagonal[i] + mass[i]) * x[i];
+    for (int e = level.row_begin[i]; e < level.row_begin[i + 1]; ++e) sum -= times(level.weight[e], x[level.neighbour[e]]);
+    y[i] = sum;
+    dot += real_product(x[i], sum);
   }
+  return dot;
 }
 
 }  // namespace
 
-void diffuse_cross_system(const CrossSystem& system, const std::vector<double>& mass, std::vector<Complex>& z,
-                          const RunContext& context) {
+void diffuse_crosses(const CrossLevel& finest, const std::vector<double>& mass, std::vector<Complex>& z, const RunContext& context) {
   constexpr int kMaxIterations = 60;
   constexpr double kTolerance = 1e-4;
+  const CrossSystem& system = finest.system;
   const int n = system.size();
   std::vector<Complex> residual(n), direction(n), image(n), scaled(n), x = z;
   const auto precondition = [&] {
@@ -33,16 +36,14 @@ void diffuse_cross_system(const CrossSystem& system, const std::vector<double>& 
     }
     return dot;
   };
-  apply(system, mass, x, image);
+  apply(finest, mass, x, image);
   for (int i = 0; i < n; ++i) residual[i] = system.source[i] + mass[i] * z[i] - image[i];
   double rho = precondition();
   const double first = rho;
   direction = scaled;
   for (int step = 0; step < kMaxIterations && rho > kTolerance * kTolerance * first && rho > kTiny; ++step) {
     if (step % 8 == 0) context.checkpoint(0.8);
-    apply(system, mass, direction, image);
-    double curvature = 0;
-    for (int i = 0; i < n; ++i) curvature += real_product(direction[i], image[i]);
+    const double curvature = apply(finest, mass, direction, image);
     if (!(curvature > 0)) break;
     const double length = rho / curvature;
     for (int i = 0; i < n; ++i) {

@@ -126,12 +126,12 @@ int inner_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std
   return sum;
 }
 
-Solution finished(const WorkingSurface& surface, const FaceAngles& angles, const CrossUnknowns& cross, std::vector<Complex> z,
-                  const std::vector<double>& diffusion_times, bool may_cancel, const RunContext& context) {
+Solution finished(const WorkingSurface& surface, const FaceAngles& angles, const CrossUnknowns& cross, const CrossLevel& finest,
+                  std::vector<Complex> z, const std::vector<double>& diffusion_times, bool may_cancel, const RunContext& context) {
   std::vector<double> mass(z.size());
   for (const double time : diffusion_times) {
     for (std::size_t i = 0; i < z.size(); ++i) mass[i] = 2 * cross.diffusion_mass[i] / time;
-    diffuse_cross_system(cross.system, mass, z, context);
+    diffuse_crosses(finest, mass, z, context);
   }
   Solution solution;
   solution.directions = directions_of(cross, z);
@@ -165,8 +165,9 @@ std::array<Solution, 2> both_solutions(const WorkingSurface& surface, const Face
   const bool compares = !(options.turn_for_lengths > 0);
   std::array<Solution, 2> both;
   parallel_for(compares ? 2 : 1, context.threads, [&](int i) {
-    both[i] = i == 0 ? finished(surface, angles, cross, relax_crosses(levels, options.sweeps, each), options.diffusion_times, compares, each)
-                     : finished(surface, angles, cross, smoothest_crosses(levels, kLinearSweeps, each),
+    both[i] = i == 0 ? finished(surface, angles, cross, levels[0], relax_crosses(levels, options.sweeps, each),
+                                options.diffusion_times, compares, each)
+                     : finished(surface, angles, cross, levels[0], smoothest_crosses(levels, kLinearSweeps, each),
                                 options.smoothest_diffusion_times, compares, each);
   });
   if (!compares) both[1] = both[0];

@@ -17,23 +17,26 @@ struct Bending {
   double area = 0;
 };
 
-/// Angle between the faces of edge h, positive where the edge is convex.
-double fold_angle(const TriangleMesh& mesh, int h, const Vector3& along) {
-  const Vector3 here = mesh.normal(h / 3), there = mesh.normal(mesh.opposite(h) / 3);
+/// Angle between two faces with these normals, positive where the edge along which they meet is convex.
+double fold_angle(const Vector3& here, const Vector3& there, const Vector3& along) {
   return std::atan2(here.cross(there).dot(along), here.dot(there));
 }
 
 std::vector<Bending> bending_of_faces(const WorkingSurface& surface) {
   const TriangleMesh& mesh = surface.mesh;
   std::vector<Bending> bending(mesh.face_count());
-  for (int f = 0; f < mesh.face_count(); ++f) bending[f].area = mesh.area(f);
+  std::vector<Vector3> normal(mesh.face_count());
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    bending[f].area = mesh.area(f);
+    normal[f] = mesh.normal(f);
+  }
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const int o = mesh.opposite(h);
     if (o < h || surface.features.is_feature(h)) continue;
     const Vector3 e = mesh.edge_vector(h);
     const double length = e.norm();
     if (!(length > 0)) continue;
-    const Eigen::Matrix3d half = (0.5 * fold_angle(mesh, h, e / length) / length) * e * e.transpose();
+    const Eigen::Matrix3d half = (0.5 * fold_angle(normal[h / 3], normal[o / 3], e / length) / length) * e * e.transpose();
     bending[h / 3].tensor += half;
     bending[o / 3].tensor += half;
   }

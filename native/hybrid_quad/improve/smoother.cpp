@@ -289,7 +289,7 @@ double Smoother::move_free(int v, double size) {
   for (int i = 0; i < 2; ++i) d.gradient[i] -= 2 * guide.pull.dot(basis[i]);
   for (int i = 0; i < 3; ++i) d.hessian[i] += 2 * basis[i / 2].dot(guide.stiffness * basis[(i + 1) / 2]);
   double h00 = d.hessian[0], h01 = d.hessian[1], h11 = d.hessian[2];
-  const double trace = h00 + h11, half_gap = std::hypot(0.5 * (h00 - h11), h01);
+  const double trace = h00 + h11, half_gap = std::sqrt(0.25 * (h00 - h11) * (h00 - h11) + h01 * h01);
   const double least = 0.5 * trace - half_gap, most = std::max(std::abs(least), std::abs(0.5 * trace + half_gap));
   if (least < 1e-3 * most) {
     const double shift = 1e-3 * most - least;
