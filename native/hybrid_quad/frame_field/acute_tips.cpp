@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kNarrowest = 24 * kDegree, kWidest = 50 * kDegree;  ///< of the tips that are opened
-constexpr double kOpened = 58 * kDegree, kMost = 30 * kDegree;       ///< to what angle, and by how much at most
+constexpr double kOpened = 58 * kDegree, kMost = 33 * kDegree;       ///< to what angle, and by how much at most
 constexpr double kLeastSide = 6;  ///< quad edges: shorter ones are no place for rows to end
 
 class TipOpener {
