@@ -105,9 +105,10 @@ class ComponentRemesher {
       WorkingSurface surface;
       std::vector<std::string> violations;
     };
+    const WorkingSurfaceOptions surface_options = working_surface_options(wishes_, plan_.quads, !plan_.guides.empty());
     Checked checked = clock_.measure("working surface", [&] {
       return recalled_for_plan(StageCache::Level::kPlan, "working surface", [&] {
-        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, working_surface_options(wishes_, plan_.quads),
+        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, surface_options,
                                            context_.in_stage("working surface", 0, 0.2)), {}};
         made.violations = violations_of(made.surface, mesh_, plan_.features);
         return made;

@@ -202,11 +202,11 @@ std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, 
   return density;
 }
 
-WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads) {
-  constexpr double kOfFew = 0.84, kFew = 800, kMany = 1600;
+WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides) {
+  constexpr double kFine = 0.84, kFew = 800, kMany = 1600;
   WorkingSurfaceOptions options;
-  const double many = std::clamp(std::log(quads / kFew) / std::log(kMany / kFew), 0.0, 1.0);
-  options.edge_fraction = kOfFew + many * (options.edge_fraction - kOfFew);
+  const double many = has_hard_guides ? 0.0 : std::clamp(std::log(quads / kFew) / std::log(kMany / kFew), 0.0, 1.0);
+  options.edge_fraction = kFine + many * (options.edge_fraction - kFine);
   const double shorter = 1 / std::sqrt(wishes.most_stretch);
   options.edge_fraction *= shorter;
   options.feature_edge_limit *= shorter;

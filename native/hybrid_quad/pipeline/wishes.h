@@ -42,9 +42,9 @@ void add_directions(const TriangleMesh& component, const std::vector<int>& verte
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
                                      const RemeshOptions& options, double diagonal, const RunContext& context);
 
-/// A working surface on which the shorter side of the most anisotropic quad is resolved, and finer for few quads: each has more
-/// of the shape to follow, and all are done soon.
-WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads);
+/// A working surface on which the shorter side of the most anisotropic quad is resolved, and finer for few quads, each of which
+/// has more of the shape to follow, and which are done soon, and for hard guides.
+WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides);
 
 /// What features are looked for, without marked edges. \param length  quad edge length
 FeatureOptions feature_options(const RemeshOptions& options, double length);
