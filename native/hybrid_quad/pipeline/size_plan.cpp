@@ -138,7 +138,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
                              const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
-  constexpr double kLongestEdge = 1.25, kLongestBesideGuides = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
+  constexpr double kLongestEdge = 1.25, kLongestWhereAsked = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
   constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
   // Halves of a needle are three needles, so that a surface thin as a hair becomes far more pieces than its edges do.
   constexpr double kSplitsPerPiece = 2;
@@ -147,7 +147,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.length = std::min(length, std::sqrt(area_by_density(mesh, wishes.density) / quads_for_topology(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
   const bool is_guided = std::any_of(marked.guides.begin(), marked.guides.end(), [](int set) { return set >= 0; });
-  const double longest_edge = is_guided ? kLongestBesideGuides : kLongestEdge;
+  const double longest_edge = is_guided || !wishes.density.empty() ? kLongestWhereAsked : kLongestEdge;
   const double wanted = std::max(longest_edge * plan.length / most_density, kNearEnough * std::sqrt(mesh.total_area()));
   const double most_pieces = kPieces + kPiecesPerQuad * mesh.total_area() / (plan.length * plan.length);
   const double longest = affordable_length(mesh, wanted, most_pieces);

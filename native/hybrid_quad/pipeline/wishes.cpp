@@ -205,7 +205,8 @@ std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, 
 WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides) {
   constexpr double kFine = 0.84, kFew = 800, kMany = 1600;
   WorkingSurfaceOptions options;
-  const double many = has_hard_guides ? 0.0 : std::clamp(std::log(quads / kFew) / std::log(kMany / kFew), 0.0, 1.0);
+  const bool is_asked_more = has_hard_guides || !wishes.density.empty();
+  const double many = is_asked_more ? 0.0 : std::clamp(std::log(quads / kFew) / std::log(kMany / kFew), 0.0, 1.0);
   options.edge_fraction = kFine + many * (options.edge_fraction - kFine);
   const double shorter = 1 / std::sqrt(wishes.most_stretch);
   options.edge_fraction *= shorter;

@@ -43,7 +43,7 @@ std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::v
                                      const RemeshOptions& options, double diagonal, const RunContext& context);
 
 /// A working surface on which the shorter side of the most anisotropic quad is resolved, and finer for few quads, each of which
-/// has more of the shape to follow, and which are done soon, and for hard guides.
+/// has more of the shape to follow, and which are done soon, for hard guides, and where lengths are to vary.
 WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides);
 
 /// What features are looked for, without marked edges. \param length  quad edge length
