@@ -203,11 +203,11 @@ std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, 
 }
 
 WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides) {
-  constexpr double kFine = 0.84, kFew = 800, kMany = 1600;
+  constexpr double kOfMany = 1.1, kFew = 800, kMany = 1600;
   WorkingSurfaceOptions options;
   const bool is_asked_more = has_hard_guides || !wishes.density.empty();
   const double many = is_asked_more ? 0.0 : std::clamp(std::log(quads / kFew) / std::log(kMany / kFew), 0.0, 1.0);
-  options.edge_fraction = kFine + many * (options.edge_fraction - kFine);
+  options.edge_fraction += many * (kOfMany - options.edge_fraction);
   const double shorter = 1 / std::sqrt(wishes.most_stretch);
   options.edge_fraction *= shorter;
   options.feature_edge_limit *= shorter;

@@ -42,8 +42,9 @@ void add_directions(const TriangleMesh& component, const std::vector<int>& verte
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
                                      const RemeshOptions& options, double diagonal, const RunContext& context);
 
-/// A working surface on which the shorter side of the most anisotropic quad is resolved, and finer for few quads, each of which
-/// has more of the shape to follow, and which are done soon, for hard guides, and where lengths are to vary.
+/// A working surface on which the shorter side of the most anisotropic quad is resolved, and coarser for many quads, unless
+/// hard guides or lengths that are to vary need it finer (docs/decisions/0045).
+/// \param quads  that the component is to get
 WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads, bool has_hard_guides);
 
 /// What features are looked for, without marked edges. \param length  quad edge length

@@ -180,7 +180,6 @@ class OverlayBuilder {
   /// The face's border with all cut points, counterclockwise.
   Polygon border_of(int f) const {
     Polygon polygon;
-    polygon.reserve(16);
     for (int i = 0; i < 3; ++i) {
       const int h = 3 * f + i, o = mesh_.opposite(h);
       const GridVector& a = param_.corner_uv[h];

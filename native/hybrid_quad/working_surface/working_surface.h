@@ -18,7 +18,7 @@ struct WorkingSurface {
 };
 
 struct WorkingSurfaceOptions {
-  double edge_fraction = 1.1;         ///< aimed edge length over h
+  double edge_fraction = 0.84;        ///< aimed edge length over h
   double feature_edge_limit = 0.5;     ///< eps_b of paper 3.2: no feature edge longer than this, over h
 };
 
