@@ -28,7 +28,7 @@ from hybrid_quad.blender.preview import drawing, panels, sessions
 from scenes import activate, add_cube, add_grid, add_sphere
 
 PATIENCE = 90
-BALL = 5  # pixels from the middle of a singularity's ball that are surely within it
+BALL = 4  # pixels from the middle of a singularity's ball that are surely within it
 
 
 def steps() -> Iterator[float]:
@@ -144,8 +144,8 @@ def surfaces_hide() -> Iterator[float]:
     seen = [changed(around(shown, place), around(hidden, place)) for place in places]
     print(f"facing: {facing.round(2)}, drawn: {np.round(seen, 2)}", flush=True)
     front, back = facing > 0.3, facing < -0.3
-    away = np.array([np.linalg.norm(places[front] - place, axis=1).min() > 6 * BALL for place in places])
-    expect(front.any() and (np.array(seen)[front] > 0.95).all(), "singularities of the side in front are drawn")
+    away = np.array([np.linalg.norm(places[front] - place, axis=1).min() > 7 * BALL for place in places])
+    expect(front.any() and (np.array(seen)[front] == 1).all(), "singularities of the side in front are drawn")
     expect((back & away).any() and not np.array(seen)[back & away].any(), "those behind it are not")
 
     asked.show_field, asked.show_crosses, asked.show_features, asked.show_singularities = False, True, True, True
