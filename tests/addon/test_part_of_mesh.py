@@ -166,8 +166,12 @@ def test_custom_normals_stay_as_they_are():
     result = remesh()
     kept = int(read(result.data.polygons, "loop_total", np.int32)[: int((~chosen).sum())].sum())
     after = corner_normals(result.data)
-    # Blender writes a corner normal as its float32 arc cosine from the corner's own: near that, an ulp is 1e-3.
-    assert np.abs(after[:kept] - before).max() < 2e-3
+    # Blender rounds them by the faces around: written to the result by themselves, they come back no nearer.
+    alone = result.data.copy()
+    alone.normals_split_custom_set([*before.tolist(), *after[kept:].tolist()])
+    rounding = np.abs(corner_normals(alone)[:kept] - before).max()
+    assert rounding < 2e-3
+    assert np.abs(after[:kept] - before).max() < max(1e-3, 1.01 * rounding)
     points = points_of(result)[read(result.data.loops, "vertex_index", np.int32)[kept:]] + np.array([0.3, 0.0, 0.0])
     expected = points / np.linalg.norm(points, axis=1, keepdims=True)
     assert np.abs(after[kept:] - expected).max() < 0.05

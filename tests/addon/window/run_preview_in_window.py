@@ -28,7 +28,7 @@ from hybrid_quad.blender.preview import drawing, panels, sessions
 from scenes import activate, add_cube, add_grid, add_sphere
 
 PATIENCE = 90
-BALL = 4  # pixels from the middle of a singularity's ball that are surely within it
+BALL = 5  # pixels from the middle of a singularity's ball that are surely within it
 
 
 def steps() -> Iterator[float]:
@@ -144,7 +144,7 @@ def surfaces_hide() -> Iterator[float]:
     seen = [changed(around(shown, place), around(hidden, place)) for place in places]
     print(f"facing: {facing.round(2)}, drawn: {np.round(seen, 2)}", flush=True)
     front, back = facing > 0.3, facing < -0.3
-    away = np.array([np.linalg.norm(places[front] - place, axis=1).min() > 7 * BALL for place in places])
+    away = np.array([np.linalg.norm(places[front] - place, axis=1).min() > 6 * BALL for place in places])
     expect(front.any() and (np.array(seen)[front] == 1).all(), "singularities of the side in front are drawn")
     expect((back & away).any() and not np.array(seen)[back & away].any(), "those behind it are not")
 
@@ -227,8 +227,10 @@ def place_in_view(point) -> np.ndarray:
 
 
 def around(pixels: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """(n, 3): the pixels within a ball's middle."""
     x, y = place.round().astype(int)
-    return pixels[y - BALL : y + BALL + 1, x - BALL : x + BALL + 1]
+    steps = np.arange(-BALL, BALL + 1)
+    return pixels[y - BALL : y + BALL + 1, x - BALL : x + BALL + 1][np.hypot(*np.meshgrid(steps, steps)) <= BALL]
 
 
 def between(low: np.ndarray, high: np.ndarray) -> tuple[slice, slice]:
