@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fuzz.fuzz_readers import damaged, verdict_on
-from hybrid_quad.core import mesh_io
+from hybrid_quad.core import mesh_formats
 from hybrid_quad.core.file_places import MeshFileError, replacing
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
 from hybrid_quad.core.wish_files import read_edges, read_polylines
@@ -22,7 +22,7 @@ def file_with(tmp_path, name, content):
     return path
 
 
-@pytest.mark.parametrize("suffix", mesh_io.WRITABLE)
+@pytest.mark.parametrize("suffix", mesh_formats.WRITABLE)
 def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, suffix):
     vertices, quads = surfaces.quad_box(3)
     vertices = vertices * np.pi + [1e6, 1e-9, -1 / 3]
@@ -33,7 +33,7 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, suffix):
     assert rows(polygons) == quads.tolist()
 
 
-@pytest.mark.parametrize("suffix", mesh_io.WRITABLE)
+@pytest.mark.parametrize("suffix", mesh_formats.WRITABLE)
 def test_same_mesh_same_bytes(tmp_path, suffix):
     vertices, quads = surfaces.quad_box(2)
     for name in ("one", "two"):
@@ -274,12 +274,12 @@ def test_missing_files_and_folders(tmp_path):
     with pytest.raises(MeshFileError, match="No such file"):
         read_mesh(tmp_path / "none.obj")
     with pytest.raises(MeshFileError, match="does not exist"):
-        mesh_io.check_writable(tmp_path / "none" / "a.obj")
+        mesh_formats.check_writable(tmp_path / "none" / "a.obj")
     with pytest.raises(MeshFileError, match=r"\.stl"):
-        mesh_io.check_writable(tmp_path / "a.stl")
+        mesh_formats.check_writable(tmp_path / "a.stl")
     (tmp_path / "folder.obj").mkdir()
     with pytest.raises(MeshFileError, match="is a folder"):
-        mesh_io.check_writable(tmp_path / "folder.obj")
+        mesh_formats.check_writable(tmp_path / "folder.obj")
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):

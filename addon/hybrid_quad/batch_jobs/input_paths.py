@@ -6,7 +6,7 @@ import glob
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..core.mesh_io import READABLE
+from ..core.mesh_formats import READABLE
 
 BLEND = ".blend"
 SUFFIXES = (*READABLE, BLEND)

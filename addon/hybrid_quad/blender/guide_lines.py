@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 
 from ..core.mesh_arrays import FloatArray
-from ..core.strokes import KINDS, joined_lines
+from ..core.options import STROKE_KINDS
+from ..core.strokes import joined_lines
 
 # Object types whose lines can guide. GPENCIL became GREASEPENCIL in Blender 4.3.
 LINE_TYPES = ("CURVE", "CURVES", "FONT", "SURFACE", "MESH", "GPENCIL", "GREASEPENCIL")
@@ -19,7 +20,7 @@ _PENCIL_TYPES = ("GPENCIL", "GREASEPENCIL")
 _LINE_TYPES_OF_COLLECTION = tuple(kind for kind in LINE_TYPES if kind not in ("MESH", "FONT", "SURFACE"))
 
 
-# Custom property of a guide object, or its collection, that says what its lines are for: one of KINDS. Children of the object
+# Custom property of a guide object, or its collection, that says what its lines are for: one of STROKE_KINDS. Children of the object
 # that have it guide without being named: painted lines are such.
 KIND_PROPERTY = "hybrid_quad_guide_kind"
 
@@ -58,7 +59,7 @@ def guides_without_lines(settings: Any, depsgraph: bpy.types.Depsgraph) -> list[
 def _own_kind(owner: Any) -> str | None:
     """What a guide object or collection says itself, or None."""
     kind = str(owner.get(KIND_PROPERTY, "")).lower() if owner else ""
-    return kind if kind in KINDS else None
+    return kind if kind in STROKE_KINDS else None
 
 
 def lines_of_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[FloatArray]:

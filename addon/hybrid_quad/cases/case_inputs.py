@@ -11,7 +11,8 @@ import numpy as np
 from ..batch_jobs.settings import Settings, files_of
 from ..core.errors import InternalError
 from ..core.file_places import MeshFileError
-from ..core.mesh_io import READABLE, read_mesh
+from ..core.mesh_formats import READABLE
+from ..core.mesh_io import read_mesh
 from ..core.part_files import read_part, write_polygons
 from ..core.strokes import kind_of_name
 from ..core.wish_files import read_counts, read_edges, read_polylines, read_rows

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from ..batch_jobs.settings import KINDS
-from ..core.mesh_io import WRITABLE
+from ..core.mesh_formats import WRITABLE
 from .setting_arguments import add_settings
 
 

@@ -6,10 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from ..core.check import check
 from ..core.file_places import check_apart, check_place, replacing
-from ..core.mesh_io import read_mesh
-from ..core.wish_files import read_line_elements
 from . import exit_codes
 from .messages import describe_defect, verdict_on
 
@@ -29,6 +26,10 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the defects of the input and returns the exit status."""
+    from ..core.check import check  # loads NumPy, which not all commands need
+    from ..core.mesh_io import read_mesh
+    from ..core.wish_files import read_line_elements
+
     if arguments.report:
         check_place(arguments.report)
         check_apart(arguments.report, [arguments.input])

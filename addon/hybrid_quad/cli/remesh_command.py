@@ -6,24 +6,24 @@ import argparse
 import signal
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import __version__
-from ..core import file_places, mesh_io, report, wish_files
-from ..core.errors import Cancelled, InputError, InternalError
-from ..core.mesh_arrays import FloatArray
+from ..core import file_places, report
+from ..core.errors import Cancelled, InputError
+from ..core.held_mesh import HeldQuads, can_hold, read_held, remesh_held, write_held
+from ..core.mesh_formats import check_writable
 from ..core.options import RemeshOptions
 from ..core.parent_process import end_with_stdin
-from ..core.part_files import write_polygons
-from ..core.remesh import RemeshResult, remesh_with_options
-from ..core.remesh_part import PartRemesh
-from ..core.strokes import KINDS, Stroke, joined_lines, kind_of_name
-from ..core.validation import violations
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say, what_became_of
-from .part_arguments import joined_mesh, part_solver
 from .progress_bar import ProgressBar
+from .run_checks import check_time, check_valid
 from .setting_arguments import add_settings, options_of
+
+if TYPE_CHECKING:
+    from ..core.remesh import RemeshResult
+    from ..core.remesh_part import PartRemesh
 
 FILES_READ = ("features", "curve_counts", "guides", "density", "frames", "part")  # beside IN
 
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.end_with_stdin:
         end_with_stdin()
     options = options_of(arguments)
-    mesh_io.check_writable(arguments.output)
+    check_writable(arguments.output)
     _check_files(arguments)
     try:
         result, mesh = _remesh(arguments, options, started)
@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
             say(f"warning: {warning}")
         seconds = time.monotonic() - started
         say(
-            f"{arguments.output}: {len(result.quads)} quads, {result.report['irregular_vertices']} irregular vertices, "
+            f"{arguments.output}: {result.report['quads']} quads, {result.report['irregular_vertices']} irregular vertices, "
             f"scaled Jacobian {result.report['scaled_jacobian']['mean']:.3f} in the mean, {seconds:.1f} s"
         )
     return exit_codes.OK
@@ -96,58 +96,21 @@ def _check_files(arguments: argparse.Namespace) -> None:
 
 def _remesh(
     arguments: argparse.Namespace, options: RemeshOptions, started: float
-) -> tuple[RemeshResult, PartRemesh | None]:
-    vertices, polygons = mesh_io.read_mesh(arguments.input)
-    sharp_edges = None if arguments.features is None else wish_files.read_edges(arguments.features)
-    curve_counts = None if arguments.curve_counts is None else wish_files.read_counts(arguments.curve_counts)
-    density = _numbers(arguments.density, 1, len(vertices))
-    frames = _numbers(arguments.frames, 6, len(vertices))
-    solve, asked = part_solver(arguments, vertices, polygons, options) or (remesh_with_options, options)
-    if options.time_limit is not None and time.monotonic() - started > options.time_limit:
-        raise Cancelled("the time limit passed while the mesh was read", "time_limit")
+) -> tuple[HeldQuads | RemeshResult, PartRemesh | None]:
+    reads_wishes = any(getattr(arguments, name) is not None for name in FILES_READ)
+    if reads_wishes or arguments.dump_stages or not can_hold(arguments.input, options):
+        from .array_run import remesh_arrays  # loads NumPy
+
+        return remesh_arrays(arguments, options, started)
+    mesh = read_held(arguments.input)
+    check_time(options, started)
     with ProgressBar(arguments.quiet) as bar:
-        result = solve(
-            vertices,
-            polygons,
-            asked,
-            sharp_edges=sharp_edges,
-            curve_counts=curve_counts,
-            density=None if density is None else density.reshape(-1),
-            frames=None if frames is None else frames.reshape(-1, 2, 3),
-            progress=bar.update,
-            dump_stages=arguments.dump_stages,
-            strokes=None if arguments.guides is None else _strokes(arguments),
-            stroke_radius=arguments.guide_radius,
-        )
-    problems = violations(result.vertices, result.quads)
-    if problems:
-        raise InternalError("the result is no valid quad mesh: " + "; ".join(problems), "validation")
-    return result, joined_mesh(vertices, polygons, result)
+        result = remesh_held(mesh, options, bar.update)
+    check_valid(result.mesh.violations())
+    return result, None
 
 
-def _strokes(arguments: argparse.Namespace) -> list[Stroke]:
-    """The lines of a file, each of the kind that its object's name or the option says."""
-    lines = [
-        (kind_of_name(name, arguments.guide_kind), line) for name, line in wish_files.read_polylines(arguments.guides)
-    ]
-    return [
-        Stroke(line, arguments.guide_strength, kind)
-        for kind in KINDS
-        for line in joined_lines([line for other, line in lines if other == kind])
-    ]
-
-
-def _numbers(path: str | None, width: int, count: int) -> FloatArray | None:
-    """`width` numbers for each of `count` vertices, from a file."""
-    if path is None:
-        return None
-    rows = wish_files.read_rows(path, width)
-    if len(rows) != count:
-        raise file_places.MeshFileError(f"{path}: has {len(rows)} lines of numbers for {count} vertices")
-    return rows
-
-
-def _write(arguments: argparse.Namespace, result: RemeshResult, mesh: PartRemesh | None) -> None:
+def _write(arguments: argparse.Namespace, result: HeldQuads | RemeshResult, mesh: PartRemesh | None) -> None:
     # The report first: where it cannot be written, no result must be left behind. From here on, a signal that comes
     # while the files are put in place would leave one of the two; it is held back for these few milliseconds.
     held = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -160,10 +123,12 @@ def _write(arguments: argparse.Namespace, result: RemeshResult, mesh: PartRemesh
         if arguments.report:
             with file_places.replacing(arguments.report) as file:
                 file.write(report.as_text(result.report).encode())
-        if mesh is None:
-            mesh_io.write_mesh(arguments.output, result.vertices, result.quads)
+        if isinstance(result, HeldQuads):
+            write_held(arguments.output, result)
         else:
-            write_polygons(arguments.output, mesh.vertices, mesh.faces)
+            from .array_run import write_arrays
+
+            write_arrays(arguments.output, result, mesh)
     finally:
         for number, handler in held.items():
             signal.signal(number, handler)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 
-from ..core.options import SOLVERS, SYMMETRY_CENTERS, RemeshOptions
-from ..core.strokes import KINDS
+from ..core.options import SOLVERS, STROKE_KINDS, SYMMETRY_CENTERS, RemeshOptions
 from .part_arguments import add_part
 
 
@@ -109,8 +108,8 @@ def _add_guides(parser: argparse._ActionsContainer) -> None:
     )
     parser.add_argument(
         "--guide-kind",
-        choices=KINDS,
-        default=KINDS[0],
+        choices=STROKE_KINDS,
+        default=STROKE_KINDS[0],
         help="what they are for: quads near them turn along them (default), they become chains of edges (loop), or they "
         "cross edges at right angles through their middles (ring); objects of an .obj file whose names begin with one of "
         "these and an underscore are of that kind",

@@ -37,6 +37,17 @@ def check_apart(path: str | os.PathLike[str] | None, others: Iterable[str | os.P
 
 
 @contextlib.contextmanager
+def reading(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turns what goes wrong with a file, or its contents, into a MeshFileError that names it."""
+    try:
+        yield
+    except OSError as error:
+        raise MeshFileError(f"{path}: {error.strerror or error}") from error
+    except (ValueError, IndexError, OverflowError) as error:
+        raise MeshFileError(f"{path}: {error}") from error
+
+
+@contextlib.contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """A file that takes the place of `path` once everything is in it, and vanishes if anything goes wrong before."""
     path = Path(path)

@@ -2,12 +2,11 @@
 
 Not by meshio, which takes only triangles from OFF, mistakes relative indices of OBJ and refuses files with more texture coordinates
 or normals than vertices, and which Blender's Python does not have. Vertices are never merged or reordered, except those of STL, which
-has none of its own. Texts of .obj files, which most meshes come in, are read by the compiled part, ten times as fast as Python can.
+has none of its own.
 """
 
 from __future__ import annotations
 
-import codecs
 import os
 import sys
 from pathlib import Path
@@ -15,15 +14,13 @@ from typing import BinaryIO
 
 import numpy as np
 
-from . import native
-from .file_places import MeshFileError, check_place, read_text, replacing
+from .file_places import read_text, reading, replacing
 from .mesh_arrays import FloatArray, IntArray, Polygons, as_polygons, clipped_to_int32
+from .mesh_formats import check_readable, check_writable
+from .obj_file import read_obj, write_obj, write_rows
 from .off_file import read_off
 from .ply_file import read_ply
 from .stl_file import read_stl
-
-READABLE = (".obj", ".ply", ".stl", ".off")
-WRITABLE = (".obj", ".ply", ".off")
 
 
 def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
@@ -32,7 +29,7 @@ def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
     Parameters
     ----------
     path : path
-        The format follows from the name's end, see `READABLE`.
+        The format follows from the name's end, see `mesh_formats.READABLE`.
 
     Returns
     -------
@@ -45,15 +42,10 @@ def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
     MeshFileError
     """
     path = Path(path)
-    reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_ply, ".stl": _read_stl}.get(path.suffix.lower())
-    if reader is None:
-        raise MeshFileError(f"{path}: {_unknown_kind(path)}; read are {', '.join(READABLE)}")
-    try:
+    check_readable(path)
+    reader = {".obj": _read_obj, ".off": _read_off, ".ply": _read_ply, ".stl": _read_stl}[path.suffix.lower()]
+    with reading(path):
         return reader(path)
-    except OSError as error:
-        raise MeshFileError(f"{path}: {error.strerror or error}") from error
-    except (ValueError, IndexError, OverflowError) as error:
-        raise MeshFileError(f"{path}: {error}") from error
 
 
 def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArray) -> None:
@@ -62,7 +54,7 @@ def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArr
     Parameters
     ----------
     path : path
-        The format follows from the name's end, see `WRITABLE`.
+        The format follows from the name's end, see `mesh_formats.WRITABLE`.
     vertices : (n, 3) float64
         Written so that reading gives the same bits.
     quads : (m, 4) int32
@@ -78,23 +70,9 @@ def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArr
         writer(file, vertices, quads)
 
 
-def check_writable(path: str | os.PathLike[str]) -> None:
-    """Raises MeshFileError where `path` could never be written, so that no run is wasted on it."""
-    path = Path(path)
-    if path.suffix.lower() not in WRITABLE:
-        raise MeshFileError(f"{path}: {_unknown_kind(path)}; written are {', '.join(WRITABLE)}")
-    check_place(path)
-
-
-def _unknown_kind(path: Path) -> str:
-    if not path.suffix:
-        return "the name has no ending, which would say of what kind the file is"
-    return f"files of kind {path.suffix} are not known here"
-
-
 def _read_obj(path: Path) -> tuple[FloatArray, Polygons]:
-    vertices, sizes, corners = native.load().parse_obj(path.read_bytes().removeprefix(codecs.BOM_UTF8))
-    return vertices, Polygons(sizes, corners)
+    mesh = read_obj(path)
+    return mesh.vertices, Polygons(mesh.face_sizes, mesh.face_vertices)
 
 
 def _read_off(path: Path) -> tuple[FloatArray, Polygons]:
@@ -112,19 +90,13 @@ def _read_stl(path: Path) -> tuple[FloatArray, Polygons]:
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
-    _write_rows(file, "v %.17g %.17g %.17g\n", vertices)
-    _write_rows(file, "f %d %d %d %d\n", quads + 1)
+    write_obj(file, vertices.ravel().tolist(), quads.ravel().tolist())
 
 
 def _write_off(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
     file.write(f"OFF\n{len(vertices)} {len(quads)} 0\n".encode())
-    _write_rows(file, "%.17g %.17g %.17g\n", vertices)
-    _write_rows(file, "4 %d %d %d %d\n", quads)
-
-
-def _write_rows(file: BinaryIO, row: str, values: FloatArray | IntArray) -> None:
-    """One line a row, several times as fast as numpy writes text."""
-    file.write((row * len(values) % tuple(values.ravel().tolist())).encode())
+    write_rows(file, "%.17g %.17g %.17g\n", vertices.ravel().tolist())
+    write_rows(file, "4 %d %d %d %d\n", quads.ravel().tolist())
 
 
 def _write_ply(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

@@ -11,6 +11,9 @@ SOLVERS = ("multilevel", "eigen")
 AXES = "xyz"
 SYMMETRY_CENTERS = ("origin", "bounds")
 
+STROKE_KINDS = ("direction", "loop", "ring")
+ODD_BORDERS = ("refuse", "grow", "shrink")  # what is done where the border of a part has an odd number of edges
+
 # More would take more memory than a machine has, and is most often a length in the wrong unit.
 MOST_QUADS = 5_000_000
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .file_places import MeshFileError, read_text, replacing
 from .mesh_arrays import FloatArray, Polygons
-from .mesh_io import check_writable
+from .mesh_formats import check_writable
 from .part_sheet import Indices
 
 

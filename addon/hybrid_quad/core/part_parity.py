@@ -17,8 +17,6 @@ from .errors import InputError
 from .mesh_arrays import FloatArray, Polygons
 from .part_sheet import CUT, FREE, INNER, SHARED, Indices, PartSheet, sheet_of, sides_of
 
-ODD_BORDERS = ("refuse", "grow", "shrink")
-
 
 class Cut(NamedTuple):
     """A path along which a sheet was cut.

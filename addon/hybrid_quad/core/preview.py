@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import native
-from .check import Defect
 from .curve_counts import CurveCount
 from .mesh_arrays import FacesLike, FloatArray, IntArray
 from .mesh_objects import MeshLike, vertices_and_faces
 from .options import RemeshOptions
-from .remesh import CancelCallback, ProgressCallback, native_arguments
+from .remesh import CancelCallback, ProgressCallback, native_arguments, run_native
+from .report import defect_as_json
 from .stage_cache import StageCache, lent_by
 from .strokes import Stroke
 
@@ -139,10 +138,10 @@ def preview(
     )
     stop = "quads" if with_quads else "field"
     with lent_by(cache, asked) as known:
-        found = native.load().remesh(**asked, **known, progress=progress, cancel=cancel, snapshot=None, stop_after=stop)
+        found = run_native(asked, **known, progress=progress, cancel=cancel, stop_after=stop)
     if center is not None:
         for name in ("points", "singular_points", "feature_lines", "quad_vertices"):
             found[name] += center
     report = {name: found.pop(name) for name in ("wanted_quads", "warnings", "stages")}
-    report["defects"] = [Defect.from_native(row).as_json() for row in found.pop("defects")]
+    report["defects"] = [defect_as_json(row) for row in found.pop("defects")]
     return Preview(**found, report=report)

@@ -296,11 +296,18 @@ def remesh_with_options(
     )
     snapshot = _snapshot_receiver(dump_stages, on_snapshot)
     with lent_by(cache, asked) as known:
-        result = native.load().remesh(**asked, **known, progress=progress, cancel=cancel, snapshot=snapshot)
-    if center is not None:
-        result["vertices"] += center
-    result["report"] = report.finished(result["report"], options, __version__)
-    return RemeshResult(**result)
+        found = run_native(asked, **known, progress=progress, cancel=cancel, snapshot=snapshot)
+    places = found.vertices if center is None else found.vertices + center
+    finished = report.finished(found.report, options, __version__)
+    return RemeshResult(places, found.quads, found.feature_edges, found.feature_curves, found.vertex_kinds, finished)
+
+
+def run_native(asked: dict[str, Any], **more: Any) -> Any:
+    """The compiled part's ``remesh``, of what :func:`native_arguments` gives."""
+    module = native.load()
+    wishes = dict(asked)
+    mesh = module.PolygonMesh(*(wishes.pop(name) for name in ("vertices", "face_sizes", "face_vertices")))
+    return module.remesh(mesh, **wishes, **more)
 
 
 def native_arguments(

@@ -13,9 +13,9 @@ from .curve_counts import CurveCount, as_curve_counts
 from .edge_borders import BoolArray
 from .errors import InputError
 from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_edges, as_polygons, as_vertices, require_edges
-from .options import RemeshOptions
+from .options import ODD_BORDERS, RemeshOptions
 from .part_checks import require_indices, require_sound, require_welded
-from .part_parity import ODD_BORDERS, EvenPart, even_part
+from .part_parity import EvenPart, even_part
 from .part_sheet import Indices, border_length, sheet_of
 from .part_weld import PartResult, welded
 from .part_wishes import PartWishes

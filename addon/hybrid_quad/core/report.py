@@ -7,7 +7,6 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from .check import Defect
 from .options import RemeshOptions
 
 
@@ -24,8 +23,17 @@ def finished(native_report: dict[str, Any], options: RemeshOptions, version: str
         Version of the package.
     """
     report = {"status": "ok", **native_report}
-    report["defects"] = [Defect.from_native(row).as_json() for row in native_report["defects"]]
+    report["defects"] = [defect_as_json(row) for row in native_report["defects"]]
     return {**report, **_origin(options, version)}
+
+
+def defect_as_json(row: dict[str, Any]) -> dict[str, Any]:
+    """A defect of the compiled part, its edges as pairs of vertices; see :class:`hybrid_quad.Defect`."""
+    elements = row["elements"]
+    if row["element_kind"] == "edge":
+        elements = [[a, b] for a, b in zip(elements[0::2], elements[1::2], strict=True)]
+    names = ("code", "element_kind", "elements", "repairable", "remedy", "kept")
+    return {name: elements if name == "elements" else row[name] for name in names}
 
 
 def failed(status: str, error: BaseException, options: RemeshOptions | None, version: str) -> dict[str, Any]:

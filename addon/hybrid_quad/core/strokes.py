@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from .edge_borders import polygon_normals
 from .mesh_arrays import FacesLike, FloatArray, Polygons, as_polygons, as_vertices, unit_vectors
+from .options import STROKE_KINDS
 from .surface_points import fan_triangles, nearest_on_surface, pairs_within
 
-KINDS = ("direction", "loop", "ring")
 RADIUS_IN_EDGES = 2.0  # how far directions act where nobody says
 
 _SAMPLES_PER_RADIUS = 4
@@ -106,7 +106,7 @@ def guides_from_strokes(
 def kind_of_name(name: str, usual: str) -> str:
     """The kind that the name of an object or line begins with, as in ``"loop_eye"``; `usual` where it names none."""
     first, underscore, _ = name.lower().partition("_")
-    return first if underscore and first in KINDS else usual
+    return first if underscore and first in STROKE_KINDS else usual
 
 
 def checked_strokes(strokes: Iterable[Stroke | npt.ArrayLike] | None) -> list[Stroke]:
@@ -234,8 +234,8 @@ def _as_stroke(stroke: Stroke | npt.ArrayLike) -> Stroke:
         points = as_vertices(points)
     except ValueError as error:
         raise ValueError(f"strokes must be lines of points, (k, 3) each: {error}") from None
-    if kind not in KINDS:
-        raise ValueError(f"a stroke's kind must be one of {', '.join(KINDS)}, not {kind!r}")
+    if kind not in STROKE_KINDS:
+        raise ValueError(f"a stroke's kind must be one of {', '.join(STROKE_KINDS)}, not {kind!r}")
     if not np.isfinite(points).all():
         raise ValueError("a stroke has points that are not finite")
     if not 0 <= strength <= 1:

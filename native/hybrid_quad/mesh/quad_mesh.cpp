@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/quad_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -149,6 +150,22 @@ std::vector<std::string> violations_of(const QuadMesh& mesh) {
       found.push_back("feature edge " + std::to_string(e.a) + "-" + std::to_string(e.b) + " is no edge");
   }
   return found;
+}
+
+std::vector<int> quads_without_area(const QuadMesh& mesh) {
+  constexpr double kLeastArea = 1e-12;  // of a square of the mean edge length
+  double size = 0;
+  for (const Vector3& p : mesh.positions) size = std::max(size, p.cwiseAbs().maxCoeff());
+  // To about unit size, by a power of two, so that squares of any size are in range and no digit is lost.
+  const double unit = size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
+  const double edge = unit * mean_edge_length(mesh);
+  std::vector<int> flat;
+  for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q) {
+    const auto& v = mesh.quads[q];
+    const Vector3 first = unit * (mesh.positions[v[2]] - mesh.positions[v[0]]), second = unit * (mesh.positions[v[3]] - mesh.positions[v[1]]);
+    if (!(0.5 * first.cross(second).norm() > kLeastArea * edge * edge)) flat.push_back(q);
+  }
+  return flat;
 }
 
 }  // namespace hybrid_quad

@@ -37,4 +37,7 @@ Vector3 middle_of(const QuadMesh& mesh, int q);
 /// coordinates.
 std::vector<std::string> violations_of(const QuadMesh& mesh);
 
+/// Quads whose area vector is nothing beside a square of the mean edge length, ascending.
+std::vector<int> quads_without_area(const QuadMesh& mesh);
+
 }  // namespace hybrid_quad
