@@ -10,6 +10,7 @@
 #include "callback_bridge.h"
 #include "defect_list.h"
 #include "hybrid_quad/pipeline/preview.h"
+#include "hybrid_quad/pipeline/process_memory.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/stage_cache.h"
 #include "polygon_arrays.h"
@@ -126,6 +127,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
   py::class_<StageCache>(module, "StageCache", "What the first stages of a caller's latest run gave.")
       .def(py::init<>())
       .def_property_readonly("recalled", &StageCache::recalled, "Names of the stages of the latest run that were known.");
+  module.def("keep_freed_memory", &keep_freed_memory, "Has a process that ends with its run keep the memory that it frees on the way.");
   module.def("default_options", &default_options, "Defaults of the core's options, as keyword arguments of remesh.");
   module.def(
       "remesh",
@@ -138,7 +140,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
                const std::vector<std::pair<std::vector<int>, int>>& curve_counts, double field_smoothness,
                double adaptivity, double chord_error, int narrow_quads, double anisotropy, double size_fidelity,
                bool fit_limit_surface, const std::string& symmetry, const std::string& solver, std::uint64_t seed, int threads, double time_limit,
-               double memory_limit, py::object progress,
+               double memory_limit, bool measure_distances, py::object progress,
                py::object cancel, py::object snapshot, const std::string& stop_after, StageCache* cache,
                const StageCache::Keys& cache_keys) -> py::object {
         RemeshOptions options;
@@ -163,6 +165,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
         options.fit_limit_surface = fit_limit_surface;
         options.symmetry = symmetry_named(symmetry);
         options.solver = solver_named(solver);
+        options.measure_distances = measure_distances;
         const StopAfter stop = stop_named(stop_after);
         if (cache != nullptr) cache->begin(cache_keys);
         CallbackBridge bridge(std::move(progress), std::move(cancel), std::move(snapshot), {time_limit, memory_limit});
@@ -198,7 +201,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       py::arg("curve_counts") = std::vector<std::pair<std::vector<int>, int>>{}, py::arg("field_smoothness"), py::arg("adaptivity"),
       py::arg("chord_error"), py::arg("narrow_quads"), py::arg("anisotropy"),
       py::arg("size_fidelity"), py::arg("fit_limit_surface"), py::arg("symmetry"), py::arg("solver"),
-      py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("progress").none(true) = py::none(),
+      py::arg("seed"), py::arg("threads"), py::arg("time_limit"), py::arg("memory_limit"), py::arg("measure_distances") = true, py::arg("progress").none(true) = py::none(),
       py::arg("cancel").none(true) = py::none(), py::arg("snapshot").none(true) = py::none(), py::arg("stop_after") = "", py::arg("cache").none(true) = py::none(),
       py::arg("cache_keys") = StageCache::Keys{},
       "Quad mesh, feature edges and report of one run, as a QuadMesh. With stop_after 'field' or 'quads', as a dict, only what the\n"

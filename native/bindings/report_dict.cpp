@@ -175,9 +175,10 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["extra_passes"] = report.extra_passes;
   result["edge_loops"] = dict_of_loops(report.edge_loops);
   result["scaled_jacobian"] = jacobian;
-  result["hausdorff_percent"] = report.hausdorff_percent;
-  result["mean_distance_percent"] = report.mean_distance_percent;
-  result["feature_hausdorff_percent"] = report.feature_hausdorff_percent;
+  const auto measured = [&](double percent) { return report.are_distances_measured ? py::object(py::float_(percent)) : py::none(); };
+  result["hausdorff_percent"] = measured(report.hausdorff_percent);
+  result["mean_distance_percent"] = measured(report.mean_distance_percent);
+  result["feature_hausdorff_percent"] = measured(report.feature_hausdorff_percent);
   result["limit_distance_percent"] = dict_of_limit_fit(report.limit_fit);
   result["stages"] = list_of_stages(report.stages);
   result["warnings"] = report.warnings;

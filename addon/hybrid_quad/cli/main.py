@@ -8,15 +8,18 @@ import shlex
 import signal
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from types import FrameType
 from typing import NoReturn
 
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
 from ..core.file_places import MeshFileError
-from . import batch_command, case_command, check_command, exit_codes, remesh_command
+from . import exit_codes
 from .messages import describe_elements, say
 from .setting_arguments import UsageProblem
+
+COMMANDS = ("remesh", "check", "batch", "case")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -28,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Without the program's name; default ``sys.argv[1:]``.
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
-    parser = _parser()
+    parser = _parser(given)
     try:
         options = parser.parse_args(given)
     except SystemExit as stop:  # argparse has printed usage, help or version
@@ -75,7 +78,8 @@ class _Parser(argparse.ArgumentParser):
         self.exit(exit_codes.WRONG_USAGE, f"{self.prog}: {message}\n{self.prog} --help tells more\n")
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
+    """Of the command that is given, or, where none is, of all: each takes its time to load."""
     parser = _Parser(
         prog="hybrid-quad",
         description="Pure-quad remeshing of surface meshes.",
@@ -84,8 +88,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"hybrid-quad {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    remesh_command.add_to(commands)
-    check_command.add_to(commands)
-    batch_command.add_to(commands)
-    case_command.add_to(commands)
+    for command in given[:1] if given[:1] and given[0] in COMMANDS else COMMANDS:
+        import_module(f"{__package__}.{command}_command").add_to(commands)
     return parser

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
-from ..core import file_places, report
+from ..core import file_places, native, report
 from ..core.errors import Cancelled, InputError
 from ..core.held_mesh import HeldQuads, can_hold, read_held, remesh_held, write_held
 from ..core.mesh_formats import check_writable
@@ -102,10 +102,11 @@ def _remesh(
         from .array_run import remesh_arrays  # loads NumPy
 
         return remesh_arrays(arguments, options, started)
+    native.load().keep_freed_memory()
     mesh = read_held(arguments.input)
     check_time(options, started)
     with ProgressBar(arguments.quiet) as bar:
-        result = remesh_held(mesh, options, bar.update)
+        result = remesh_held(mesh, options, bar.update, measure_distances=arguments.report is not None)
     check_valid(result.mesh.violations())
     return result, None
 

@@ -63,11 +63,20 @@ def read_held(path: str | os.PathLike[str]) -> Any:
         return read_obj(Path(path))
 
 
-def remesh_held(mesh: Any, options: RemeshOptions, progress: Callable[[str, float], object]) -> HeldQuads:
-    """:func:`hybrid_quad.core.remesh.remesh_with_options` without wishes; the result is the same, bit for bit."""
+def remesh_held(
+    mesh: Any, options: RemeshOptions, progress: Callable[[str, float], object], *, measure_distances: bool = True
+) -> HeldQuads:
+    """:func:`hybrid_quad.core.remesh.remesh_with_options` without wishes; the result is the same, bit for bit.
+
+    Parameters
+    ----------
+    measure_distances : bool
+        Whether the report is to say how far the quads are from the surface, which takes a tenth of a run.
+    """
     from .. import __version__
 
-    found = native.load().remesh(mesh, **options.for_native(), progress=progress)
+    asked = options.for_native()
+    found = native.load().remesh(mesh, **asked, measure_distances=measure_distances, progress=progress)
     return HeldQuads(found, report.finished(found.report, options, __version__))
 
 

@@ -10,6 +10,9 @@
 #include <unistd.h>
 
 #include <fstream>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #if defined(__APPLE__)
 #include <mach/mach.h>
 #endif
@@ -70,5 +73,13 @@ double resident_memory_mb() {
 
 #endif
 #endif
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  constexpr int kMegabytes = 1 << 20;
+  mallopt(M_TRIM_THRESHOLD, 256 * kMegabytes);
+  mallopt(M_MMAP_THRESHOLD, 32 * kMegabytes);  // the largest that it takes
+#endif
+}
 
 }  // namespace hybrid_quad

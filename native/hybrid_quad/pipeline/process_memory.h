@@ -8,4 +8,8 @@ double peak_memory_mb();
 /// Resident memory of the process now, in MB.
 double resident_memory_mb();
 
+/// Has the C library keep what is freed for what is allocated next, where it would give it back to the system and soon ask for
+/// it again, at the price of every page's first touch. For a process that ends with its run; the GNU library only.
+void keep_freed_memory();
+
 }  // namespace hybrid_quad

@@ -187,8 +187,7 @@ GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, c
   return guided;
 }
 
-void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& plans,
-                     const std::vector<ComponentResult>& parts, const SurfaceIndex& whole, const RunContext& context) {
+void measure_shapes(RemeshResult& result) {
   RemeshReport& r = result.report;
   const ShapeQuality shape = shape_quality(result.mesh);
   r.scaled_jacobian_mean = shape.scaled_jacobian_mean;
@@ -196,6 +195,12 @@ void measure_quality(RemeshResult& result, const std::vector<ComponentPlan>& pla
   r.scaled_jacobian_min = shape.scaled_jacobian_min;
   r.irregular_vertices = shape.irregular_vertices;
   r.edge_loops = edge_loops_of(result.mesh);
+}
+
+void measure_distances(RemeshResult& result, const std::vector<ComponentPlan>& plans, const std::vector<ComponentResult>& parts,
+                       const SurfaceIndex& whole, const RunContext& context) {
+  RemeshReport& r = result.report;
+  r.are_distances_measured = true;
   const SurfaceDistance distance = surface_distance(result.mesh, whole, context);
   r.hausdorff_percent = distance.hausdorff();
   r.mean_distance_percent = distance.mean;
@@ -303,7 +308,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
       guide.fit.length *= run.frame.scale;
       guide.fit.edge_length *= run.frame.scale;
     }
-    measure_quality(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
+    measure_shapes(result);
+    if (run.options.measure_distances) measure_distances(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });
   move_outward(run.frame, soup, result.mesh);
   report.stages = clock.records;

@@ -58,6 +58,7 @@ struct RemeshOptions {
   bool fit = true;                 ///< let free vertices leave the surface a little so that the quads' faces lie nearer to it
   bool fit_limit_surface = false;  ///< move vertices off the surface so that their Catmull-Clark limit surface lies on it
   SymmetryOptions symmetry;
+  bool measure_distances = true;   ///< hold the result against the surface once more for the report, a tenth of a run
 };
 
 struct StageRecord {
@@ -151,6 +152,7 @@ struct RemeshReport {
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   EdgeLoopSummary edge_loops;
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
+  bool are_distances_measured = false;
   double hausdorff_percent = 0, mean_distance_percent = 0;
   double feature_hausdorff_percent = 0;  ///< 0 without features
   LimitFitRecord limit_fit;
