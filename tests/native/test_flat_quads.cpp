@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/quality/quality.h"
 
@@ -40,6 +42,18 @@ TEST(FlatQuads, GetAnAreaOnTheRightSide) {
     EXPECT_GT(upward_area(mesh, 4), 1e-10) << i;
     for (int c = 0; c < 4; ++c) EXPECT_LT((mesh.positions[mesh.quads[4][c]] - flat[i][c]).norm(), 1e-3) << i;
     EXPECT_EQ(open_flat_quads(mesh, 1), 0) << i;
+  }
+}
+
+TEST(FlatQuads, AreFoundAtAnyScale) {
+  for (const double scale : {1e-200, 1e-30, 1.0, 1e30, 1e200}) {
+    QuadMesh mesh = nine_quads();
+    for (Vector3& p : mesh.positions) p *= scale;
+    EXPECT_TRUE(quads_without_area(mesh).empty()) << scale;
+    const auto& quad = mesh.quads[4];
+    mesh.positions[quad[0]] = 0.5 * (mesh.positions[quad[1]] + mesh.positions[quad[3]]);
+    mesh.positions[quad[2]] = mesh.positions[quad[0]];
+    EXPECT_EQ(quads_without_area(mesh), std::vector<int>{4}) << scale;
   }
 }
 

@@ -201,11 +201,20 @@ def test_no_command_and_help(capfd):
     assert hybrid_quad.__version__ in capfd.readouterr().out
 
 
-def test_a_result_that_is_not_valid_is_never_written(tmp_path, torus, capfd, monkeypatch):
-    from hybrid_quad.cli import remesh_command
+@pytest.mark.parametrize("is_held", [True, False])
+def test_a_result_that_is_not_valid_is_never_written(tmp_path, torus, capfd, monkeypatch, is_held):
+    from hybrid_quad.cli import array_run, remesh_command
 
-    monkeypatch.setattr(remesh_command, "violations", lambda *_: ["1 quads without area: [3]"])
-    unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100"], exit_codes.BUG)
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100"]
+    if is_held:
+        checked = remesh_command.check_valid
+        monkeypatch.setattr(remesh_command, "check_valid", lambda _: checked(["1 quads without area: [3]"]))
+    else:
+        monkeypatch.setattr(array_run, "violations", lambda *_: ["1 quads without area: [3]"])
+        features = tmp_path / "features.txt"
+        features.write_text("")
+        arguments += ["--features", str(features)]
+    unchanged(tmp_path, arguments, exit_codes.BUG)
     message = capfd.readouterr().err
     assert "without area" in message
     assert "report it" in message
@@ -238,7 +247,7 @@ def test_a_machine_without_memory(tmp_path, torus, capfd, monkeypatch):
     def fail(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr(remesh_command, "remesh_with_options", fail)
+    monkeypatch.setattr(remesh_command, "remesh_held", fail)
     unchanged(tmp_path, ["remesh", torus, str(tmp_path / "out.obj")], exit_codes.CANCELLED)
     assert "memory" in capfd.readouterr().err
 
@@ -339,7 +348,7 @@ def test_an_interruption_while_it_starts_is_answered_as_any_other(monkeypatch, c
     from hybrid_quad.cli import main as module
     from hybrid_quad.cli import program
 
-    def interrupted():
+    def interrupted(_given):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(module, "_parser", interrupted)

@@ -8,11 +8,10 @@ from typing import Any
 
 import bpy
 
-from ..core.options import AXES
-from ..core.options import STROKE_KINDS
+from ..core.options import AXES, STROKE_KINDS
 from . import part_arguments
 from .edge_marks import SOURCES
-from .transfer.kinds import STROKE_KINDS as TRANSFER_KINDS
+from .transfer.kinds import KINDS as TRANSFER_KINDS
 
 
 class UsageError(Exception):
@@ -149,7 +148,9 @@ def _add_guides(parser: argparse.ArgumentParser) -> None:
             help=f'use the attribute "hybrid_quad_{name}", or do not',
         )
     for name, what in (("guide-kind", "guide objects"), ("annotations-kind", "annotations")):
-        parser.add_argument(f"--{name}", choices=STROKE_KINDS, help=f"what {what} are for: a direction, a loop or a ring")
+        parser.add_argument(
+            f"--{name}", choices=STROKE_KINDS, help=f"what {what} are for: a direction, a loop or a ring"
+        )
     parser.add_argument("--guide-radius", type=_positive_number, metavar="N", help="how far guides act, in quads")
 
 

@@ -78,7 +78,7 @@ class _Parser(argparse.ArgumentParser):
         self.exit(exit_codes.WRONG_USAGE, f"{self.prog}: {message}\n{self.prog} --help tells more\n")
 
 
-def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
+def _parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
     """Of the command that is given, or, where none is, of all: each takes its time to load."""
     parser = _Parser(
         prog="hybrid-quad",
