@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_quad/mesh/obj_text.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "polygon_arrays.h"
@@ -37,22 +38,6 @@ py::array_t<std::uint8_t> kinds_of(const QuadMesh& mesh) {
   return array_from_values(kinds);
 }
 
-py::tuple coordinates_of(const QuadMesh& mesh) {
-  py::tuple out(3 * mesh.positions.size());
-  std::size_t at = 0;
-  for (const Vector3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) out[at++] = py::float_(p[k]);
-  return out;
-}
-
-py::tuple corners_of(const QuadMesh& mesh) {
-  py::tuple out(4 * mesh.quads.size());
-  std::size_t at = 0;
-  for (const auto& quad : mesh.quads)
-    for (const int v : quad) out[at++] = py::int_(v);
-  return out;
-}
-
 std::vector<std::string> all_violations_of(const QuadMesh& mesh) {
   if (mesh.quads.empty()) return {"no quads"};
   std::vector<std::string> found = violations_of(mesh);
@@ -77,8 +62,7 @@ void bind_meshes(py::module_& module) {
       .def_property_readonly("feature_edges", [](const RemeshResult& result) { return feature_edges_of(result.mesh); }, "(k, 2) int32.")
       .def_property_readonly("feature_curves", [](const RemeshResult& result) { return feature_curves_of(result.mesh); }, "(k,) int32.")
       .def_property_readonly("vertex_kinds", [](const RemeshResult& result) { return kinds_of(result.mesh); }, "(n,) uint8.")
-      .def_property_readonly("coordinates", [](const RemeshResult& result) { return coordinates_of(result.mesh); }, "Those of all vertices, a tuple of 3 n floats.")
-      .def_property_readonly("corners", [](const RemeshResult& result) { return corners_of(result.mesh); }, "0-based vertices of all quads, a tuple of 4 m ints.")
+      .def("obj_text", [](const RemeshResult& result) { return py::bytes(obj_text(result.mesh.positions, result.mesh.quads)); }, "The bytes of an OBJ file.")
       .def_property_readonly("report", [](const RemeshResult& result) { return dict_of_report(result.report); }, "Counts, quality, timings and warnings.")
       .def("__len__", [](const RemeshResult& result) { return result.mesh.quads.size(); })
       .def("violations", [](const RemeshResult& result) { return all_violations_of(result.mesh); }, "What keeps it from being a valid pure-quad mesh, in sentences.");

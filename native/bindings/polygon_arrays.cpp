@@ -35,6 +35,15 @@ std::vector<std::array<int, 2>> pairs_from_array(const IntArray& pairs) {
   return result;
 }
 
+std::vector<std::array<int, 4>> quads_from_array(const IntArray& quads) {
+  if (quads.ndim() != 2 || quads.shape(1) != 4) throw py::value_error("quads must be a (k, 4) array");
+  const auto rows = quads.unchecked<2>();
+  std::vector<std::array<int, 4>> result;
+  result.reserve(static_cast<std::size_t>(rows.shape(0)));
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i) result.push_back({rows(i, 0), rows(i, 1), rows(i, 2), rows(i, 3)});
+  return result;
+}
+
 std::vector<Vector3> vectors_from_array(const DoubleArray& vectors) {
   if (vectors.ndim() != 2 || vectors.shape(1) != 3) throw py::value_error("vectors must be a (k, 3) array");
   const auto rows = vectors.unchecked<2>();

@@ -19,6 +19,9 @@ PolygonSoup soup_from_arrays(const DoubleArray& vertices, const IntArray& face_s
 /// \param pairs k by 2
 std::vector<std::array<int, 2>> pairs_from_array(const IntArray& pairs);
 
+/// \param quads k by 4
+std::vector<std::array<int, 4>> quads_from_array(const IntArray& quads);
+
 /// \param vectors k by 3
 std::vector<Vector3> vectors_from_array(const DoubleArray& vectors);
 

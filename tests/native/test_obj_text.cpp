@@ -61,5 +61,21 @@ TEST(ObjText, CutTextsAreReadToTheirEnd) {
   }
 }
 
+TEST(ObjText, QuadsAreReadBackToTheLastBit) {
+  std::vector<Vector3> positions;
+  for (const double scale : {1.0, 1e-300, 1e300, 5e-324, 1.7976931348623157e308, 123456789012345680.0})
+    for (const double x : {0.1, 1.0 / 3, -0.7}) positions.emplace_back(scale * x, -scale, 0.0);
+  const std::vector<std::array<int, 4>> quads{{0, 1, 2, 3}, {3, 2, 17, 9}};
+  const PolygonSoup soup = parse_obj(obj_text(positions, quads));
+  EXPECT_EQ(soup.positions, positions);
+  EXPECT_EQ(soup.face_sizes, (std::vector<int>{4, 4}));
+  EXPECT_EQ(soup.face_vertices, (std::vector<int>{0, 1, 2, 3, 3, 2, 17, 9}));
+}
+
+TEST(ObjText, NumbersAreWrittenAsPrintfDoes) {
+  EXPECT_EQ(obj_text({Vector3(0.1, -2, 1e-7)}, {}), "v 0.10000000000000001 -2 9.9999999999999995e-08\n");
+  EXPECT_EQ(obj_text({Vector3(1e20, 3e16, 12345678901234567)}, {{0, 0, 0, 0}}), "v 1e+20 30000000000000000 12345678901234568\nf 1 1 1 1\n");
+}
+
 }  // namespace
 }  // namespace hybrid_quad

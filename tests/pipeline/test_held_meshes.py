@@ -13,7 +13,8 @@ from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
 from hybrid_quad.core import held_mesh
 from hybrid_quad.core.file_places import MeshFileError
-from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.mesh_formats import WRITABLE
+from hybrid_quad.core.mesh_io import read_mesh, write_mesh
 from hybrid_quad.core.options import RemeshOptions
 from hybrid_quad.core.validation import violations
 from support import surfaces
@@ -25,13 +26,17 @@ def held(path, options, **more):
     return held_mesh.remesh_held(held_mesh.read_held(path), options, lambda *_: None, **more)
 
 
+def write_arrays(path, result):
+    write_mesh(path, result.vertices, result.quads)
+
+
 def without_clock(report):
     stages = [stage["name"] for stage in report["stages"]]
     return {**report, "stages": stages}
 
 
 @pytest.mark.parametrize("name", ["c3d_fandisk", "c3d_suzanne"])
-def test_quads_and_report_are_those_of_arrays(name):
+def test_quads_and_report_and_files_are_those_of_arrays(tmp_path, name):
     path = MODELS / f"{name}.obj"
     options = RemeshOptions(quads=700, seed=3)
     found = held(path, options)
@@ -40,8 +45,14 @@ def test_quads_and_report_are_those_of_arrays(name):
     assert np.array_equal(found.quads, expected.quads)
     assert without_clock(found.report) == without_clock(expected.report)
     assert len(found.mesh) == len(expected.quads)
-    assert found.mesh.coordinates == tuple(expected.vertices.ravel().tolist())
-    assert found.mesh.corners == tuple(expected.quads.ravel().tolist())
+    for name, write in (("held", held_mesh.write_held), ("arrays", write_arrays)):
+        for suffix in WRITABLE:
+            write(tmp_path / f"{name}{suffix}", found if name == "held" else expected)
+    for suffix in WRITABLE:
+        assert (tmp_path / f"held{suffix}").read_bytes() == (tmp_path / f"arrays{suffix}").read_bytes()
+    rows = [("v %.17g %.17g %.17g", expected.vertices), ("f %d %d %d %d", expected.quads + 1)]
+    lines = [form % tuple(row) for form, values in rows for row in values.tolist()]
+    assert (tmp_path / "held.obj").read_text().splitlines() == lines
 
 
 def test_what_is_wrong_with_a_mesh_is_told_in_the_same_words(tmp_path):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from . import native, report
 from .file_places import reading, replacing
 from .mesh_formats import check_writable
-from .obj_file import read_obj, write_obj
+from .obj_file import read_obj
 from .options import RemeshOptions
 
 if TYPE_CHECKING:
@@ -89,4 +89,4 @@ def write_held(path: str | os.PathLike[str], result: HeldQuads) -> None:
         return
     check_writable(path)
     with replacing(path) as file:
-        write_obj(file, result.mesh.coordinates, result.mesh.corners)
+        file.write(result.mesh.obj_text())

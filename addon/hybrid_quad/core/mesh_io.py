@@ -14,10 +14,11 @@ from typing import BinaryIO
 
 import numpy as np
 
+from . import native
 from .file_places import read_text, reading, replacing
 from .mesh_arrays import FloatArray, IntArray, Polygons, as_polygons, clipped_to_int32
 from .mesh_formats import check_readable, check_writable
-from .obj_file import read_obj, write_obj, write_rows
+from .obj_file import read_obj
 from .off_file import read_off
 from .ply_file import read_ply
 from .stl_file import read_stl
@@ -90,13 +91,18 @@ def _read_stl(path: Path) -> tuple[FloatArray, Polygons]:
 
 
 def _write_obj(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
-    write_obj(file, vertices.ravel().tolist(), quads.ravel().tolist())
+    file.write(native.load().obj_text(vertices, quads))
 
 
 def _write_off(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
     file.write(f"OFF\n{len(vertices)} {len(quads)} 0\n".encode())
-    write_rows(file, "%.17g %.17g %.17g\n", vertices.ravel().tolist())
-    write_rows(file, "4 %d %d %d %d\n", quads.ravel().tolist())
+    _write_rows(file, "%.17g %.17g %.17g\n", vertices)
+    _write_rows(file, "4 %d %d %d %d\n", quads)
+
+
+def _write_rows(file: BinaryIO, row: str, values: FloatArray | IntArray) -> None:
+    """One line a row, several times as fast as numpy writes text."""
+    file.write((row * len(values) % tuple(values.ravel().tolist())).encode())
 
 
 def _write_ply(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

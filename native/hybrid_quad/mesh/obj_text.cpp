@@ -3,7 +3,9 @@
 #include <fast_float/fast_float.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -94,6 +96,36 @@ int vertex_of_corner(std::string_view word, std::size_t latest, int line) {
   return static_cast<int>(std::clamp<long long>(place, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
+constexpr int kDigits = 17;
+constexpr std::size_t kLongest = 32;  // characters of a number
+
+/// As printf's %.17g in the C locale.
+char* put_number(char* to, double value) {
+#if defined(__cpp_lib_to_chars) && __cpp_lib_to_chars >= 201611L
+  return std::to_chars(to, to + kLongest, value, std::chars_format::general, kDigits).ptr;
+#else
+  const int length = std::snprintf(to, kLongest, "%.*g", kDigits, value);
+  std::replace(to, to + length, ',', '.');  // of a locale that the host has set
+  return to + length;
+#endif
+}
+
+char* put_number(char* to, int value) { return std::to_chars(to, to + kLongest, value).ptr; }
+
+/// One line: a letter and numbers.
+template <class Number>
+void put_line(std::string& text, char letter, const Number* begin, const Number* end) {
+  std::array<char, 4 * (kLongest + 1) + 2> line;
+  char* to = line.data();
+  *to++ = letter;
+  for (const Number* number = begin; number != end; ++number) {
+    *to++ = ' ';
+    to = put_number(to, *number);
+  }
+  *to++ = '\n';
+  text.append(line.data(), to);
+}
+
 }  // namespace
 
 PolygonSoup parse_obj(std::string_view text) {
@@ -112,6 +144,18 @@ PolygonSoup parse_obj(std::string_view text) {
     }
   }
   return soup;
+}
+
+std::string obj_text(const std::vector<Vector3>& positions, const std::vector<std::array<int, 4>>& quads) {
+  constexpr std::size_t kUsualLine = 70, kUsualQuad = 30;
+  std::string text;
+  text.reserve(kUsualLine * positions.size() + kUsualQuad * quads.size());
+  for (const Vector3& p : positions) put_line(text, 'v', p.data(), p.data() + 3);
+  for (std::array<int, 4> quad : quads) {
+    for (int& v : quad) ++v;
+    put_line(text, 'f', quad.data(), quad.data() + 4);
+  }
+  return text;
 }
 
 }  // namespace hybrid_quad

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
+
+#include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
 
@@ -59,7 +62,7 @@ void check_edges(const std::vector<Side>& sides, std::vector<char>& on_border,
       neighbours.emplace_back(sides[i].quad, sides[i + 1].quad);
     i = j;
   }
-  std::sort(neighbours.begin(), neighbours.end());
+  bucket_sort(neighbours, [](const std::pair<int, int>& pair) { return pair.first; }, std::less<>());
   for (std::size_t i = 1; i < neighbours.size(); ++i)
     if (neighbours[i] == neighbours[i - 1])
       found.push_back("quads " + std::to_string(neighbours[i].first) + " and " +
@@ -75,7 +78,7 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
   corners.reserve(4 * mesh.quads.size());
   for (const auto& q : mesh.quads)
     for (int i = 0; i < 4; ++i) corners.push_back({q[i], q[(i + 1) & 3], q[(i + 3) & 3]});
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+  bucket_sort(corners, [](const Corner& c) { return c.vertex; }, [](const Corner& a, const Corner& b) {
     return std::tie(a.vertex, a.before, a.after) < std::tie(b.vertex, b.before, b.after);
   });
   std::vector<int> first(mesh.positions.size() + 1, 0);
@@ -139,7 +142,7 @@ std::vector<std::string> violations_of(const QuadMesh& mesh) {
       const int a = mesh.quads[q][i], b = mesh.quads[q][(i + 1) & 3];
       sides.push_back({std::min(a, b), std::max(a, b), static_cast<int>(q), a < b});
     }
-  std::sort(sides.begin(), sides.end());
+  bucket_sort(sides, [](const Side& side) { return side.low; }, std::less<>());
   std::vector<char> on_border(mesh.positions.size(), 0);
   check_edges(sides, on_border, found);
   check_fans(mesh, on_border, found);
