@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/base/interruptible.h"
 #include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/base/parallel_forest.h"
@@ -104,6 +105,29 @@ TEST(Threads, WhereThereAreNoMoreTheCallersDoesItAll) {
   EXPECT_EXIT(std::_Exit(works_without_threads() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 #endif
+
+TEST(Threads, HelpersThatWaitDoWhatThoseStartedForALoopDo) {
+  constexpr int kLoops = 300, kCount = 40;
+  const HelperThreads helpers;
+  std::vector<std::atomic<int>> done(kCount);
+  for (int loop = 0; loop < kLoops; ++loop) parallel_for(kCount, 1 + loop % 4, [&](int i) { ++done[i]; });
+  for (const std::atomic<int>& times : done) EXPECT_EQ(times, kLoops);
+}
+
+TEST(Threads, HelpersThatWaitAreNotAskedInsideOfALoop) {
+  constexpr int kOuter = 8, kInner = 50;
+  const HelperThreads helpers;
+  std::atomic<int> done{0};
+  parallel_for(kOuter, 3, [&](int) {
+    const HelperThreads inner;
+    parallel_for(kInner, 3, [&](int) { ++done; });
+    parallel_for(kInner, 2, [&](int) { parallel_for(2, 2, [&](int) { ++done; }); });
+  });
+  EXPECT_EQ(done, kOuter * kInner * 3);
+  EXPECT_THROW(parallel_for(kInner, 3, [](int i) { if (i == 7) throw Cancelled("here"); }), Cancelled);
+  parallel_for(kInner, 3, [&](int) { ++done; });
+  EXPECT_EQ(done, kOuter * kInner * 3 + kInner);
+}
 
 TEST(Threads, RunsDoNotDisturbEachOther) {
   const PolygonSoup soup = soup_of(test::flat_grid(12, 12));

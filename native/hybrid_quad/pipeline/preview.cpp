@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/even_spread.h"
@@ -96,6 +97,7 @@ std::vector<int> spread_by_quads(const Preview& found) {
 }  // namespace
 
 Preview preview(const PolygonSoup& soup, const RemeshOptions& options, bool with_quads, const RunContext& context) {
+  const HelperThreads helpers;
   Preview out;
   RemeshReport report;
   StageClock clock;

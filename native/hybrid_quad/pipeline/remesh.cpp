@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/count_budget.h"
@@ -289,6 +290,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
 }
 
 RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options, const RunContext& scene_context) {
+  const HelperThreads helpers;
   RemeshResult result;
   RemeshReport& report = result.report;
   StageClock clock;
