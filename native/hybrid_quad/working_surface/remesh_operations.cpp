@@ -108,14 +108,21 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     });
     return n;
   };
+  struct Before {
+    double worst = 1;
+    int flat = 0;  // faces without area
+  };
+  const auto shapes_before = [&] {  // only where a face comes out poor
+    Before before;
+    mesh_.visit_outgoing(a, [&](int k) {
+      const double shape_before = shape(p, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k)));
+      before.worst = std::min(before.worst, shape_before);
+      before.flat += !(shape_before > 0);
+    });
+    return before;
+  };
   bool keeps = true, turns = false;
-  double nearest2 = std::numeric_limits<double>::infinity(), worst_before = 1;
-  int flat_before = 0, flat_after = 0;  // faces without area
-  mesh_.visit_outgoing(a, [&](int k) {
-    const double shape_before = shape(p, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k)));
-    worst_before = std::min(worst_before, shape_before);
-    flat_before += !(shape_before > 0);
-  });
+  int flat_after = 0;
   mesh_.visit_outgoing(a, [&](int k) {
     const int f = k / 3;
     if (!keeps || f == dying || f == other_dying) return;
@@ -130,14 +137,18 @@ bool SurfaceRemesher::keeps_shape(int h, double& error) const {
     const bool is_flat = !(size_after > 0);
     flat_after += is_flat;
     if (is_flat)
-      keeps = flat_after <= flat_before;
+      keeps = flat_after <= shapes_before().flat;
     else
       keeps = after.dot(reference) >= (thin ? 0.3 : kNormalCosine) * size_after * reference.norm() &&
-              (new_shape >= kPoorShape || new_shape > kMore * worst_before) &&
+              (new_shape >= kPoorShape || new_shape > kMore * shapes_before().worst) &&
               ((x - q).norm() <= too_long || (x - q).norm() <= kMore * (x - p).norm() || on_curve);
-    nearest2 = std::min(nearest2, (nearest_on_triangle(p, q, x, y) - p).squaredNorm());
   });
   if (!keeps) return false;
+  double nearest2 = std::numeric_limits<double>::infinity();
+  mesh_.visit_outgoing(a, [&](int k) {
+    if (k / 3 == dying || k / 3 == other_dying) return;
+    nearest2 = std::min(nearest2, (nearest_on_triangle(p, q, mesh_.position(mesh_.to(k)), mesh_.position(mesh_.apex(k))) - p).squaredNorm());
+  });
   if (turns && !on_curve) {
     mesh_.visit_outgoing(a, [&](int k) {
       if (!keeps || k / 3 == dying || k / 3 == other_dying) return;
@@ -172,6 +183,8 @@ bool SurfaceRemesher::wants_flip(int h) const {
   const int c = mesh_.apex(h), d = mesh_.apex(o);
   if (vertex_[c].on_feature && vertex_[d].on_feature && final_phase_) return false;
   const Vector3 &a = mesh_.position(mesh_.from(h)), &b = mesh_.position(mesh_.to(h));
+  const auto is_acute = [&](const Vector3& apex) { return (a - apex).dot(b - apex) >= 0; };
+  if (is_acute(mesh_.position(c)) && is_acute(mesh_.position(d))) return false;  // neither cotangent is negative
   return cotangent_at(mesh_.position(c), a, b) + cotangent_at(mesh_.position(d), a, b) < -1e-6;
 }
 
