@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -36,7 +37,7 @@ class FlawMeasure {
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].flaws;
     const double least_area = kLeastArea * piece_.h * piece_.h;
-    ++looks_;
+    looks_.fetch_add(1, std::memory_order_relaxed);
     known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &near_face_[q])};
     if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_))) known[0].flaws = kBeyondDoubt;
     return known[0].flaws;
@@ -97,7 +98,7 @@ class FlawMeasure {
   Agreement agreement_;
   const Agreement* least_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
-  mutable long long looks_ = 0;
+  mutable std::atomic<long long> looks_{0};
   mutable std::vector<int> near_face_;               ///< #Q: nearest to where the quad was last, -1 if unknown
 };
 

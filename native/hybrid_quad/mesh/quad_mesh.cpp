@@ -161,12 +161,15 @@ std::vector<int> quads_without_area(const QuadMesh& mesh) {
   for (const Vector3& p : mesh.positions) size = std::max(size, p.cwiseAbs().maxCoeff());
   // To about unit size, by a power of two, so that squares of any size are in range and no digit is lost.
   const double unit = size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
-  const double edge = unit * mean_edge_length(mesh);
+  const auto side = [&](int a, int b) { return Vector3(unit * mesh.positions[b] - unit * mesh.positions[a]); };
+  double sum = 0;
+  for (const auto& v : mesh.quads)
+    for (int i = 0; i < 4; ++i) sum += side(v[i], v[(i + 1) & 3]).norm();
+  const double edge = sum / (4.0 * static_cast<double>(mesh.quads.size()));
   std::vector<int> flat;
   for (int q = 0; q < static_cast<int>(mesh.quads.size()); ++q) {
     const auto& v = mesh.quads[q];
-    const Vector3 first = unit * (mesh.positions[v[2]] - mesh.positions[v[0]]), second = unit * (mesh.positions[v[3]] - mesh.positions[v[1]]);
-    if (!(0.5 * first.cross(second).norm() > kLeastArea * edge * edge)) flat.push_back(q);
+    if (!(0.5 * side(v[0], v[2]).cross(side(v[1], v[3])).norm() > kLeastArea * edge * edge)) flat.push_back(q);
   }
   return flat;
 }
