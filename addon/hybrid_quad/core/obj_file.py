@@ -1,4 +1,4 @@
-"""Wavefront OBJ files. Their texts, which most meshes come in, are read, and written, by the compiled part, ten times as fast as Python can.
+"""Wavefront OBJ files, which most meshes come in: the compiled part reads and writes them, ten times as fast as Python can.
 
 Vertices are never merged or reordered. Needs no NumPy.
 """
