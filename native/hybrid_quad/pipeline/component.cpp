@@ -87,9 +87,7 @@ using LastMeans = int (Finishing::*)(QuadMesh&, const RunContext&) const;
 
 /// Last means against flawed and folded quads. Not where guides follow the quads' edges, which keep their number.
 /// \returns what `means` counts
-int put_right(const LastMeans means, const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes,
-              const RemeshOptions& options, ComponentResult& result, StageClock& clock, const RunContext& context) {
-  const Finishing finishing(plan, whole, wishes, options);
+int put_right(const LastMeans means, const Finishing& finishing, ComponentResult& result, StageClock& clock, const RunContext& context) {
   const RunContext improving = context.in_stage("improve", 0.97, 0.97);
   const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
   if (count == 0) return 0;
@@ -179,7 +177,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       // A few splits change less than other passes, which have other quads everywhere.
       std::size_t in_vain = 0;
       if ((!any || needs_more) && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
-        result.repairs.split_sides += put_right(&Finishing::split_flawed, unrefined, whole, wishes, options, result, clock, pass);
+        result.repairs.split_sides += put_right(&Finishing::split_flawed, Finishing(unrefined, whole, wishes, options), result, clock, pass);
         if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
       }
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
@@ -212,18 +210,19 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
+  const Finishing finishing(*plan_of_best, whole, wishes, options);
   if (planned.guides.empty()) {
     if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain)
-      best.repairs.split_sides += put_right(&Finishing::split_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
+      best.repairs.split_sides += put_right(&Finishing::split_flawed, finishing, best, clock, context);
     if (best.flawed_quads > 0)
-      best.repairs.refined_places += put_right(&Finishing::refine_flawed, *plan_of_best, whole, wishes, options, best, clock, context);
+      best.repairs.refined_places += put_right(&Finishing::refine_flawed, finishing, best, clock, context);
   }
   if (planned.guides.empty() && options.improve) {
     // They see to it that no more quads are in doubt; one that was may still have become flawed, which no shape is worth.
     const auto put_best_right = [&](LastMeans means) {
       const QuadMesh before = best.mesh;
       const int flawed_before = best.flawed_quads, doubtful_before = best.doubtful_quads;
-      const int places = put_right(means, *plan_of_best, whole, wishes, options, best, clock, context);
+      const int places = put_right(means, finishing, best, clock, context);
       if (best.flawed_quads <= flawed_before) return places;
       best.mesh = before;
       best.flawed_quads = flawed_before;
