@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -37,7 +35,6 @@ class FlawMeasure {
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].flaws;
     const double least_area = kLeastArea * piece_.h * piece_.h;
-    looks_.fetch_add(1, std::memory_order_relaxed);
     known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &near_face_[q])};
     if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_))) known[0].flaws = kBeyondDoubt;
     return known[0].flaws;
@@ -70,13 +67,6 @@ class FlawMeasure {
   }
   const SurfaceIndex& surface() const { return whole_; }
 
-  /// How often a quad has been held against the surface, which on a crumpled one takes a look at much of it.
-  long long looks() const { return looks_; }
-
-  /// How many looks improvers of single shapes may take on a mesh of so many quads, several times what they need on surfaces
-  /// that are not crumpled.
-  static long long most_looks(std::size_t quad_count) { return 40000 + 100 * static_cast<long long>(quad_count); }
-
   static constexpr double kFair = 0.2;
   static constexpr double kMostForShapes = 0.4;
 
@@ -98,7 +88,6 @@ class FlawMeasure {
   Agreement agreement_;
   const Agreement* least_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
-  mutable std::atomic<long long> looks_{0};
   mutable std::vector<int> near_face_;               ///< #Q: nearest to where the quad was last, -1 if unknown
 };
 

@@ -26,11 +26,10 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   piece.locate_all();
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
-  const long long most_looks = FlawMeasure::most_looks(quads.quads.size());
   int raised = 0;
   for (const auto& [shape, q] : poor) {
     std::vector<int> around(piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
-    for (int rings = 0; rings <= kMostRings && effort > 0 && measure.looks() < most_looks && shape_of(piece.mesh, q) < kPoor; ++rings) {
+    for (int rings = 0; rings <= kMostRings && effort > 0 && shape_of(piece.mesh, q) < kPoor; ++rings) {
       context.checkpoint();
       if (rings > 0) around = with_ring(piece.mesh, around);
       ShapeDescent descent(piece, measure, around);

@@ -29,15 +29,14 @@ class FoldedSplitter {
       : quads_(quads), input_(input), features_(features), index_(index), whole_(whole), options_(options), context_(context),
         edge_(options.target_length > 0 ? options.target_length : mean_edge_length(quads)),
         most_quads_(quads.quads.size() + std::max(kFewMore, quads.quads.size() / kMostMore)),
-        failures_left_(kLeastFailures + static_cast<int>(quads.quads.size()) / kQuadsAFailure),
-        looks_left_(FlawMeasure::most_looks(quads.quads.size())) {}
+        failures_left_(kLeastFailures + static_cast<int>(quads.quads.size()) / kQuadsAFailure) {}
 
   int run() {
     int splits = 0;
     is_futile_.assign(quads_.quads.size(), 0);
     if (worst_folded() < 0) return 0;
     find_quads_at();
-    for (int q = worst_folded(); q >= 0 && failures_left_ > 0 && looks_left_ > 0; q = worst_folded()) {
+    for (int q = worst_folded(); q >= 0 && failures_left_ > 0; q = worst_folded()) {
       context_.checkpoint();
       is_futile_[q] = 1;
       const int split_sides = split(q);
@@ -137,7 +136,7 @@ class FoldedSplitter {
   }
 
   /// The first of the likeliest that is worth it, else the best of them that has no more flaws.
-  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before) {
+  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before) const {
     constexpr std::size_t kThorough = 3;
     const auto badness = [](const Trial& trial) { return std::make_tuple(trial.shapes.flaws, trial.shapes.folded, trial.shapes.lack); };
     std::vector<Trial> trials = trials_at(q, start);
@@ -168,7 +167,7 @@ class FoldedSplitter {
     return worst;
   }
 
-  std::vector<Trial> trials_at(int q, const Trial& start) {
+  std::vector<Trial> trials_at(int q, const Trial& start) const {
     constexpr DescentPlan kHaste{{0.3, 0.15, 0.07, 0.03}, 4};
     const QuadMesh& mesh = start.mesh;
     const Workpiece piece = located(mesh);
@@ -195,13 +194,12 @@ class FoldedSplitter {
     return piece;
   }
 
-  void relax(Trial& trial, const DescentPlan& plan) {
+  void relax(Trial& trial, const DescentPlan& plan) const {
     Workpiece piece = located(trial.mesh);
     const FlawMeasure measure(piece, whole_, options_.agreement, &options_.least_agreement);
     ShapeDescent(piece, measure, trial.moving).descend(plan);
     trial.mesh = piece.mesh.extract(piece.face);
     trial.shapes = shapes_of(piece.mesh, all_quads(trial.mesh), measure);
-    looks_left_ -= measure.looks();
   }
 
   Shapes shapes_of_patch(const QuadMesh& mesh) const {
@@ -223,7 +221,6 @@ class FoldedSplitter {
   double edge_;
   std::size_t most_quads_;
   int failures_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
-  long long looks_left_;
   std::vector<std::vector<int>> quads_at_;
   std::vector<char> is_futile_;  ///< #Q
 };
