@@ -88,6 +88,6 @@ def _parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"hybrid-quad {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for command in given[:1] if given[:1] and given[0] in COMMANDS else COMMANDS:
+    for command in [given[0]] if given and given[0] in COMMANDS else COMMANDS:
         import_module(f"{__package__}.{command}_command").add_to(commands)
     return parser
