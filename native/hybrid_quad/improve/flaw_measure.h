@@ -28,22 +28,22 @@ class FlawMeasure {
     const std::array<Vector3, 4> p = corners(q);
     if (q >= static_cast<int>(known_.size())) {
       known_.resize(q + 1);
-      near_face_.resize(q + 1, -1);
+      lookup_.resize(q + 1);
     }
     std::array<Known, 2>& known = known_[q];
     if (known[0].corners == p) return known[0].flaws;
     std::swap(known[0], known[1]);
     if (known[0].corners == p) return known[0].flaws;
     const double least_area = kLeastArea * piece_.h * piece_.h;
-    known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &near_face_[q])};
-    if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_))) known[0].flaws = kBeyondDoubt;
+    known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &lookup_[q])};
+    if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_, &lookup_[q]))) known[0].flaws = kBeyondDoubt;
     return known[0].flaws;
   }
 
   /// Learns of all quads, on all threads, which of them are flawed.
   void look_at_all(const RunContext& context) const {
     known_.resize(piece_.mesh.quad_count());
-    near_face_.resize(piece_.mesh.quad_count(), -1);
+    lookup_.resize(piece_.mesh.quad_count());
     parallel_chunks(piece_.mesh.quad_count(), context, [&](int begin, int end) {
       for (int q = begin; q < end; ++q)
         if (piece_.mesh.alive(q)) is_flawed(q);
@@ -67,6 +67,13 @@ class FlawMeasure {
   }
   const SurfaceIndex& surface() const { return whole_; }
 
+  /// Of the surface's tree, by all looks so far: a measure of work.
+  long long boxes_opened() const {
+    long long sum = 0;
+    for (const Lookup& lookup : lookup_) sum += lookup.boxes_opened;
+    return sum;
+  }
+
   static constexpr double kFair = 0.2;
   static constexpr double kMostForShapes = 0.4;
 
@@ -88,7 +95,7 @@ class FlawMeasure {
   Agreement agreement_;
   const Agreement* least_;
   mutable std::vector<std::array<Known, 2>> known_;  ///< the latest first
-  mutable std::vector<int> near_face_;               ///< #Q: nearest to where the quad was last, -1 if unknown
+  mutable std::vector<Lookup> lookup_;               ///< #Q: of where the quad was last
 };
 
 }  // namespace hybrid_quad

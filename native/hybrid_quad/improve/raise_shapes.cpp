@@ -28,6 +28,7 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
   int raised = 0;
   for (const auto& [shape, q] : poor) {
+    if (measure.boxes_opened() > kMostBoxesOpened) break;
     std::vector<int> around(piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
     for (int rings = 0; rings <= kMostRings && effort > 0 && shape_of(piece.mesh, q) < kPoor; ++rings) {
       context.checkpoint();

@@ -36,7 +36,7 @@ class FoldedSplitter {
     is_futile_.assign(quads_.quads.size(), 0);
     if (worst_folded() < 0) return 0;
     find_quads_at();
-    for (int q = worst_folded(); q >= 0 && failures_left_ > 0; q = worst_folded()) {
+    for (int q = worst_folded(); q >= 0 && failures_left_ > 0 && boxes_opened_ <= kMostBoxesOpened; q = worst_folded()) {
       context_.checkpoint();
       is_futile_[q] = 1;
       const int split_sides = split(q);
@@ -136,7 +136,7 @@ class FoldedSplitter {
   }
 
   /// The first of the likeliest that is worth it, else the best of them that has no more flaws.
-  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before) const {
+  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before) {
     constexpr std::size_t kThorough = 3;
     const auto badness = [](const Trial& trial) { return std::make_tuple(trial.shapes.flaws, trial.shapes.folded, trial.shapes.lack); };
     std::vector<Trial> trials = trials_at(q, start);
@@ -167,7 +167,7 @@ class FoldedSplitter {
     return worst;
   }
 
-  std::vector<Trial> trials_at(int q, const Trial& start) const {
+  std::vector<Trial> trials_at(int q, const Trial& start) {
     constexpr DescentPlan kHaste{{0.3, 0.15, 0.07, 0.03}, 4};
     const QuadMesh& mesh = start.mesh;
     const Workpiece piece = located(mesh);
@@ -194,12 +194,13 @@ class FoldedSplitter {
     return piece;
   }
 
-  void relax(Trial& trial, const DescentPlan& plan) const {
+  void relax(Trial& trial, const DescentPlan& plan) {
     Workpiece piece = located(trial.mesh);
     const FlawMeasure measure(piece, whole_, options_.agreement, &options_.least_agreement);
     ShapeDescent(piece, measure, trial.moving).descend(plan);
     trial.mesh = piece.mesh.extract(piece.face);
     trial.shapes = shapes_of(piece.mesh, all_quads(trial.mesh), measure);
+    boxes_opened_ += measure.boxes_opened();
   }
 
   Shapes shapes_of_patch(const QuadMesh& mesh) const {
@@ -220,6 +221,7 @@ class FoldedSplitter {
   const RunContext& context_;
   double edge_;
   std::size_t most_quads_;
+  long long boxes_opened_ = 0;
   int failures_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
   std::vector<std::vector<int>> quads_at_;
   std::vector<char> is_futile_;  ///< #Q

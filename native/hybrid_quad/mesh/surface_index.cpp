@@ -190,7 +190,9 @@ struct SurfaceIndex::Tree {
     const double d = (q - p).squaredNorm();
     const bool comes_first = best.face < 0 || f < best.face;  // of none yet, the distance is the filter's
     if (comes_first ? !(d < with_rounding(best.squared_distance, p)) : !(with_rounding(d, p) < best.squared_distance)) return;
-    best = {f, q, d};
+    best.face = f;
+    best.position = q;
+    best.squared_distance = d;
   }
   std::array<Vector3, 3> corners_of(int f) const {
     const auto& t = mesh.face(f);
@@ -428,10 +430,12 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
       const int f = tree.order[~entry.child];
       if (!tree.passes_normal(f, filter)) continue;
       Tree::take(p, f, tree.corners[~entry.child], best);
+      if (filter.any && best.face >= 0) break;
       limit = tree.limit_of(best.squared_distance, p);
       continue;
     }
     const Node& node = tree.nodes[entry.child];
+    ++best.boxes_opened;
     const Four distances = node.squared_distances(tree.along_axes_of(entry.child, p, place));
     const int begin = size;
     for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {

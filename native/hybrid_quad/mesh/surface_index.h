@@ -12,6 +12,7 @@ namespace hybrid_quad {
 /// A point of a triangle mesh.
 struct SurfacePoint {
   int face = -1;
+  int boxes_opened = 0;  ///< by the search that found it: what that took
   Vector3 position = Vector3::Zero();
   double squared_distance = 0;
 };
@@ -38,6 +39,7 @@ class SurfaceIndex {
     double min_cosine = -2;
     int hint = -1;                         ///< a face near the answer: a first bound by walking
     double within = std::numeric_limits<double>::infinity();  ///< only points nearer than this
+    bool any = false;                      ///< the first face found will do: who asks whether there is one
   };
   /// The nearest point among faces that pass the filter; face = -1 if there is none.
   SurfacePoint nearest(const Vector3& p, const Filter& filter) const;

@@ -55,32 +55,43 @@ double area_in_ball(const std::array<Vector3, 3>& triangle, const Vector3& norma
   return std::abs(sum);
 }
 
+/// Whether a face passes the filter. \param lookup  to count in
+bool has_any(const SurfaceIndex& surface, const Vector3& p, SurfaceIndex::Filter filter, Lookup& lookup) {
+  filter.any = true;
+  const SurfacePoint point = surface.nearest(p, filter);
+  lookup.boxes_opened += point.boxes_opened;
+  return point.face >= 0;
+}
+
 /// Whether a face that is as near to p as the nearest one points against a normal.
-bool points_against(const SurfaceIndex& surface, const Vector3& p, const SurfacePoint& nearest, const Vector3& normal, double touches) {
+bool points_against(const SurfaceIndex& surface, const Vector3& p, const SurfacePoint& nearest, const Vector3& normal, double touches,
+                    Lookup& lookup) {
   constexpr double kAgainst = 0.15;
   SurfaceIndex::Filter against;
   against.normal = -normal;
   against.min_cosine = kAgainst;
   against.within = std::sqrt(nearest.squared_distance) + touches;
-  return surface.nearest(p, against).face >= 0;
+  return has_any(surface, p, against, lookup);
 }
 
 constexpr double kAgrees = 0.05;
 
-SurfacePoint nearest_that_agrees(const SurfaceIndex& surface, const Ball& ball, const Vector3& normal) {
+/// Faces in a ball that agree with a normal.
+SurfaceIndex::Filter those_that_agree(const Ball& ball, const Vector3& normal) {
   SurfaceIndex::Filter along;
   along.normal = normal;
   along.min_cosine = kAgrees;
   along.within = ball.radius;
-  return surface.nearest(ball.centre, along);
+  return along;
 }
 
 /// Whether a face that agrees with a normal reaches with its inside to within `distance` of the ball's centre, and faces that
 /// agree have about as much area in the ball as those that do not: two sheets in one place, not the edge of one.
-bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, const Vector3& normal) {
+bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, const Vector3& normal, Lookup& lookup) {
   constexpr double kInside = 1e-3;  // of the face's area
   constexpr double kAsMuch = 0.5;
-  const SurfacePoint point = nearest_that_agrees(surface, {ball.centre, distance}, normal);
+  const SurfacePoint point = surface.nearest(ball.centre, those_that_agree({ball.centre, distance}, normal));
+  lookup.boxes_opened += point.boxes_opened;
   if (point.face < 0) return false;
   const TriangleMesh& mesh = surface.mesh();
   const std::array<Vector3, 3> p = corners_of(mesh, point.face);
@@ -97,8 +108,8 @@ bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, c
 }
 
 /// Whether the faces in a ball that agree with a normal have that much area there, or one of them has its middle there.
-bool agrees_in(const SurfaceIndex& surface, const Ball& ball, const Vector3& normal, double enough_area) {
-  if (nearest_that_agrees(surface, ball, normal).face < 0) return false;
+bool agrees_in(const SurfaceIndex& surface, const Ball& ball, const Vector3& normal, double enough_area, Lookup& lookup) {
+  if (!has_any(surface, ball.centre, those_that_agree(ball, normal), lookup)) return false;
   if (enough_area <= 0) return true;
   const TriangleMesh& mesh = surface.mesh();
   const Vector3 reach = Vector3::Constant(ball.radius);
@@ -139,7 +150,7 @@ std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test)
 
 }  // namespace
 
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement, int* face) {
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement, Lookup* lookup) {
   constexpr double kReach = 0.28, kTouches = 1e-6;
   Vector3 normal = area_vector(corners);
   const double area = normal.norm();
@@ -151,23 +162,26 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
     centre += 0.25 * corners[i];
     size += 0.25 * (corners[(i + 1) % 4] - corners[i]).norm();
   }
+  Lookup unknown;
+  Lookup& known = lookup ? *lookup : unknown;
   SurfaceIndex::Filter filter;
-  if (face) filter.hint = *face;
+  filter.hint = known.face;
   const SurfacePoint near = surface.nearest(centre, filter);
-  if (face) *face = near.face;
-  if (near.face < 0 || !points_against(surface, centre, near, normal, kTouches * size)) return false;
+  known.face = near.face;
+  known.boxes_opened += near.boxes_opened;
+  if (near.face < 0 || !points_against(surface, centre, near, normal, kTouches * size, known)) return false;
   const double distance = std::sqrt(near.squared_distance);
   const Ball ball{centre, distance + kReach * size};
-  return !agrees_in(surface, ball, normal, agreement.area) &&
-         !(agreement.or_coincides && coincides(surface, ball, distance + kTouches * size, normal));
+  return !agrees_in(surface, ball, normal, agreement.area, known) &&
+         !(agreement.or_coincides && coincides(surface, ball, distance + kTouches * size, normal, known));
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
   return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, agreement); });
 }
 
-bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement, int* face) {
-  return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement, face);
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement, Lookup* lookup) {
+  return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement, lookup);
 }
 
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {

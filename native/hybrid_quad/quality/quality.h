@@ -45,19 +45,25 @@ struct Agreement {
   bool or_coincides = false;  ///< or the inside of a face that is as near as the nearest one, however small the quad
 };
 
+/// What looking a quad up on the surface left behind.
+struct Lookup {
+  int face = -1;               ///< in: one that may be near, -1: none known; out: the nearest one
+  long long boxes_opened = 0;  ///< of the surface's tree; added to: how much work it is, the same on every machine
+};
+
 /// Whether a quad points against the surface: against a face at its nearest point and against nearly all of it within a
 /// quarter of the quad's mean edge length beyond that, so that the far side of a thin sheet does not count. Of what is as near
 /// as the nearest point, at an edge or where sheets coincide, any face counts.
-/// \param face  null, or a face that may be near (-1: none known), and the nearest one afterwards: the answer is the same, and is found sooner
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement = {}, int* face = nullptr);
+/// \param lookup  null, or of the quad's last places: the answer is the same, and is found sooner
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement = {}, Lookup* lookup = nullptr);
 
 /// All quads that are. Ascending.
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
 /// Whether a quad is inverted or has no more than so much area (scene units squared).
-/// \param face  as for is_inverted
+/// \param lookup  as for is_inverted
 bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement = {},
-               int* face = nullptr);
+               Lookup* lookup = nullptr);
 
 /// Quads that are, where the least area is 1e-10 of the squared mean edge length. Ascending.
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
