@@ -12,6 +12,10 @@
 #include <fstream>
 #if defined(__GLIBC__)
 #include <malloc.h>
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <cstdlib>
 #endif
 #if defined(__APPLE__)
 #include <mach/mach.h>
@@ -74,11 +78,31 @@ double resident_memory_mb() {
 #endif
 #endif
 
+#if defined(__GLIBC__)
+namespace {
+
+/// Has the heap's end, which grows by `bytes` and the pad, be of pages as large as the system has them: it touches hundreds at once.
+void advise_large_pages(std::size_t bytes) {
+#if defined(MADV_HUGEPAGE)
+  void* const grown = std::malloc(bytes);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(grown) + page - 1) / page * page;
+  const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  if (grown && begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  std::free(grown);
+#endif
+}
+
+}  // namespace
+#endif
+
 void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int kMegabytes = 1 << 20;
   mallopt(M_TRIM_THRESHOLD, 256 * kMegabytes);
   mallopt(M_MMAP_THRESHOLD, 32 * kMegabytes);  // the largest that it takes
+  mallopt(M_TOP_PAD, 256 * kMegabytes);
+  advise_large_pages(16 * kMegabytes);
 #endif
 }
 
