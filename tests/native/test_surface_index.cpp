@@ -46,6 +46,36 @@ TEST(SurfaceIndex, FindsWhatBruteForceFinds) {
   }
 }
 
+TEST(SurfaceIndex, AnyFaceIsFoundWhereTheNearestIs) {
+  const TriangleMesh m = test::torus(24, 12);
+  const SurfaceIndex index(m, {});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-2, 2);
+  int found = 0;
+  long long boxes_of_any = 0, boxes_of_nearest = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 p(u(random), u(random), u(random));
+    SurfaceIndex::Filter filter;
+    filter.normal = Vector3(u(random), u(random), u(random)).normalized();
+    filter.min_cosine = 0.3;
+    filter.within = 0.8;
+    const SurfacePoint nearest = index.nearest(p, filter);
+    filter.any = true;
+    const SurfacePoint any = index.nearest(p, filter);
+    ASSERT_EQ(any.face >= 0, nearest.face >= 0);
+    boxes_of_any += any.boxes_opened;
+    boxes_of_nearest += nearest.boxes_opened;
+    if (any.face < 0) continue;
+    ++found;
+    EXPECT_GE(m.normal(any.face).dot(filter.normal), filter.min_cosine);
+    EXPECT_LT(any.squared_distance, filter.within * filter.within);
+    EXPECT_GE(any.squared_distance, nearest.squared_distance);
+  }
+  EXPECT_GT(found, 50);
+  EXPECT_LT(found, 450);
+  EXPECT_LT(boxes_of_any, boxes_of_nearest);
+}
+
 TEST(SurfaceIndex, SizeAndPlaceMakeNoDifference) {
   const TriangleMesh torus = test::torus(24, 12);
   for (const double size : {1e-30, 1e-3, 1e30})

@@ -18,6 +18,7 @@ constexpr double kNormalCosine = 0.7;    ///< a face may turn by 45 degrees when
 constexpr double kSameCosine = 0.97;    ///< normals that agree so well cannot hide that a surface leaves the input
 constexpr double kStill = 0.03;          ///< over h: vertices do not move by less
 constexpr double kHair = 1e-6;           ///< of the way to the middle of a face: opens a face without area
+constexpr double kTooLong = 4.0 / 3;     ///< of the aimed length: what a collapse does not make longer
 constexpr double kPoorShape = 0.25;      ///< shape below which a collapse may not make a triangle worse
 
 /// 1 for an equilateral triangle, 0 for one without area.
@@ -54,6 +55,8 @@ int SurfaceRemesher::split(int h, double at) {
   const Vector3 p = mesh_.position(a) + at * mesh_.edge_vector(h);
   const int m = mesh_.split_edge(h, p);
   vertex_.push_back(d);
+  has_changed_.resize(mesh_.face_slots());
+  set_changed_around(m);
   return m;
 }
 
@@ -93,13 +96,38 @@ bool SurfaceRemesher::keeps_feature_distance(int h) const {
   return keeps;
 }
 
+/// Whether an edge of from(h) surely gets longer than keeps_shape() lets it when from(h) goes to to(h): that settles nearly all.
+bool SurfaceRemesher::stretches_edge(int h) const {
+  constexpr double kSurely = 1 + 1e-9;
+  const int a = mesh_.from(h), dying = h / 3, other_dying = mesh_.opposite(h) >= 0 ? mesh_.opposite(h) / 3 : -1;
+  if (vertex_[a].on_feature) return false;
+  const Vector3 p = mesh_.position(a), q = mesh_.position(mesh_.to(h));
+  const double too_long2 = kSurely * std::pow(kTooLong * options_.edge_fraction * vertex_[a].target, 2);
+  const auto stretches = [&](int k) {
+    if (k / 3 == dying || k / 3 == other_dying) return false;
+    const Vector3& x = mesh_.position(mesh_.to(k));
+    const double length2 = (x - q).squaredNorm();
+    return length2 > too_long2 && length2 > kSurely * kMore * kMore * (x - p).squaredNorm();
+  };
+  int across = h;  // in a fan of six the edge that leads away from to(h)
+  for (int turn = 0; turn < 3 && across >= 0; ++turn) across = mesh_.rotate_ccw(across);
+  if (across >= 0 && stretches(across)) return true;
+  const int start = mesh_.outgoing(a);
+  int k = start;
+  do {
+    if (stretches(k)) return true;
+    k = mesh_.rotate_ccw(k);
+  } while (k >= 0 && k != start);
+  return false;
+}
+
 /// Whether the faces about from(h) stay where they are, and as good, when it goes to to(h). \param error what is lost
 bool SurfaceRemesher::keeps_shape(int h, double& error) const {
   const int a = mesh_.from(h), b = mesh_.to(h);
   const int dying = h / 3, other_dying = mesh_.opposite(h) >= 0 ? mesh_.opposite(h) / 3 : -1;
   const Vector3 p = mesh_.position(a), q = mesh_.position(b);
   const double target = vertex_[a].target;
-  const double too_long = 4.0 / 3 * options_.edge_fraction * target;
+  const double too_long = kTooLong * options_.edge_fraction * target;
   const bool on_curve = vertex_[a].on_feature;
   const auto region_normal = [&](int region) {
     Vector3 n = Vector3::Zero();
@@ -166,12 +194,13 @@ bool SurfaceRemesher::try_collapse(int h) {
   if (vertex_[a].on_feature && !may_leave_curve_vertex(h)) return false;
   if (final_phase_ && !keeps_feature_distance(h)) return false;
   double error = 0;
-  if (!keeps_shape(h, error) || !mesh_.can_collapse(h)) return false;
+  if (stretches_edge(h) || !keeps_shape(h, error) || !mesh_.can_collapse(h)) return false;
   if (c >= 0) {
     --curve_edges_[c];
     curve_originals_[c] -= vertex_[a].input >= 0;
     error = std::min(error, kCurveError * vertex_[b].target);
   }
+  set_changed_around(a);
   mesh_.collapse(h);
   if (!vertex_[b].on_feature || c >= 0) vertex_[b].error = std::max(vertex_[b].error, error);
   return true;
@@ -297,6 +326,7 @@ void SurfaceRemesher::relax_vertex(int v) {
     vertex_[v].hint = q.face;
     vertex_[v].input = -1;
     vertex_[v].error = 0;
+    set_changed_around(v);
     return;
   }
 }

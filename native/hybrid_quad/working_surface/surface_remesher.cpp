@@ -26,7 +26,8 @@ SurfaceRemesher::SurfaceRemesher(const SurfaceIndex& index, const FeatureGraph& 
       input_region_(features.face_region),
       index_(index),
       mesh_(index.mesh(), features.halfedge_curve, features.face_region),
-      vertex_(index.mesh().vertex_count()) {
+      vertex_(index.mesh().vertex_count()),
+      has_changed_(index.mesh().face_count(), 1) {
   const TriangleMesh& input = index.mesh();
   for (int v = 0; v < input.vertex_count(); ++v) {
     VertexData& d = vertex_[v];
@@ -88,6 +89,7 @@ void SurfaceRemesher::renumber() {
   for (const int slot : compacted.vertex_slot) vertex.push_back(vertex_[slot]);
   vertex_ = std::move(vertex);
   mesh_ = EditableMesh(compacted.mesh, std::move(compacted.halfedge_curve), std::move(compacted.face_region));
+  has_changed_.assign(mesh_.face_slots(), 1);
 }
 
 void SurfaceRemesher::collapse_short_edges(double longest) {
@@ -164,23 +166,27 @@ void SurfaceRemesher::split_edges_between_features() {
     }
 }
 
-/// Towards the Delaunay triangulation, where that does not move the surface.
+/// Towards the Delaunay triangulation, where that does not move the surface. Edges that want to and may not count as changed for the next time.
 void SurfaceRemesher::flip_edges() {
   std::vector<int> stack;
   for (int h = mesh_.halfedge_slots() - 1; h >= 0; --h)
-    if (stands_for_edge(h) && wants_flip(h)) stack.push_back(h);
+    if (stands_for_edge(h) && has_changed(h) && wants_flip(h)) stack.push_back(h);
+  std::fill(has_changed_.begin(), has_changed_.end(), 0);
   long long flips_left = 4LL * mesh_.halfedge_slots();
   while (!stack.empty() && flips_left > 0) {
     const int h = stack.back();
     stack.pop_back();
     checkpoint();
-    if (!wants_flip(h) || !mesh_.can_flip(h) || !flip_keeps_shape(h)) continue;
+    if (!wants_flip(h)) continue;
     const int o = mesh_.opposite(h);
+    has_changed_[h / 3] = has_changed_[o / 3] = 1;
+    if (!mesh_.can_flip(h) || !flip_keeps_shape(h)) continue;
     mesh_.flip_edge(h);
     --flips_left;
     for (const int k : {EditableMesh::next(h), EditableMesh::previous(h), EditableMesh::next(o), EditableMesh::previous(o)})
       stack.push_back(k);
   }
+  for (const int h : stack) has_changed_[h / 3] = 1;
 }
 
 /// Where neither a collapse nor a flip could remove a face without area, one of its corners moves by a hair.

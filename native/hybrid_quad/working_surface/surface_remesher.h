@@ -38,6 +38,11 @@ class SurfaceRemesher {
   bool joins_features(int h) const {
     return !is_feature(h) && vertex_[mesh_.from(h)].on_feature && vertex_[mesh_.to(h)].on_feature;
   }
+  /// Whether a face at the edge is other than when flip_edges() last looked at it.
+  bool has_changed(int h) const { return has_changed_[h / 3] || (mesh_.opposite(h) >= 0 && has_changed_[mesh_.opposite(h) / 3]); }
+  void set_changed_around(int v) {
+    mesh_.visit_outgoing(v, [this](int h) { has_changed_[h / 3] = 1; });
+  }
   void checkpoint() { if ((++work_ & 0x3fff) == 0) context_.checkpoint(progress_); }
 
   // Passes over the mesh.
@@ -56,6 +61,7 @@ class SurfaceRemesher {
   bool try_collapse(int h);
   bool may_leave_curve_vertex(int h) const;
   bool keeps_feature_distance(int h) const;
+  bool stretches_edge(int h) const;
   bool keeps_shape(int h, double& error) const;
   bool wants_flip(int h) const;
   bool flip_keeps_shape(int h) const;
@@ -72,6 +78,7 @@ class SurfaceRemesher {
   const SurfaceIndex& index_;
   EditableMesh mesh_;
   std::vector<VertexData> vertex_;
+  std::vector<char> has_changed_;  ///< by face: flip_edges() has to look at its edges
   std::vector<int> curve_edges_, curve_originals_;  ///< edges of each curve; input vertices left inside it
   std::vector<char> curve_is_loop_;
   bool final_phase_ = false;  ///< no operation may join two feature vertices any more
