@@ -55,7 +55,8 @@ int SurfaceRemesher::split(int h, double at) {
   const Vector3 p = mesh_.position(a) + at * mesh_.edge_vector(h);
   const int m = mesh_.split_edge(h, p);
   vertex_.push_back(d);
-  has_changed_.resize(mesh_.face_slots());
+  changed_at_.resize(mesh_.face_slots());
+  relaxed_at_.push_back(0);
   set_changed_around(m);
   return m;
 }
@@ -298,8 +299,21 @@ bool SurfaceRemesher::move_keeps_shape(int v, const Vector3& p) const {
   return keeps && worst_after > std::min(0.5, worst_before * 0.999);
 }
 
+/// Since v was last to move towards the middle of its faces; if it did, that is a change as well.
+bool SurfaceRemesher::has_changed_around(int v) const {
+  const int start = mesh_.outgoing(v);
+  int h = start;
+  do {
+    if (changed_at_[h / 3] >= relaxed_at_[v]) return true;
+    h = mesh_.rotate_ccw(h);
+  } while (h >= 0 && h != start);
+  return false;
+}
+
 /// Moves v towards the middle of its faces, within the surface.
 void SurfaceRemesher::relax_vertex(int v) {
+  if (!has_changed_around(v)) return;
+  relaxed_at_[v] = time_;
   Vector3 sum = Vector3::Zero(), n = Vector3::Zero();
   double weight = 0;
   const Vector3 p = mesh_.position(v);

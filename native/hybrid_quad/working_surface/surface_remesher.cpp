@@ -27,7 +27,8 @@ SurfaceRemesher::SurfaceRemesher(const SurfaceIndex& index, const FeatureGraph& 
       index_(index),
       mesh_(index.mesh(), features.halfedge_curve, features.face_region),
       vertex_(index.mesh().vertex_count()),
-      has_changed_(index.mesh().face_count(), 1) {
+      changed_at_(index.mesh().face_count(), 1),
+      relaxed_at_(index.mesh().vertex_count(), 0) {
   const TriangleMesh& input = index.mesh();
   for (int v = 0; v < input.vertex_count(); ++v) {
     VertexData& d = vertex_[v];
@@ -89,7 +90,8 @@ void SurfaceRemesher::renumber() {
   for (const int slot : compacted.vertex_slot) vertex.push_back(vertex_[slot]);
   vertex_ = std::move(vertex);
   mesh_ = EditableMesh(compacted.mesh, std::move(compacted.halfedge_curve), std::move(compacted.face_region));
-  has_changed_.assign(mesh_.face_slots(), 1);
+  changed_at_.assign(mesh_.face_slots(), ++time_);
+  relaxed_at_.assign(mesh_.vertex_slots(), 0);
 }
 
 void SurfaceRemesher::collapse_short_edges(double longest) {
@@ -171,7 +173,7 @@ void SurfaceRemesher::flip_edges() {
   std::vector<int> stack;
   for (int h = mesh_.halfedge_slots() - 1; h >= 0; --h)
     if (stands_for_edge(h) && has_changed(h) && wants_flip(h)) stack.push_back(h);
-  std::fill(has_changed_.begin(), has_changed_.end(), 0);
+  flipped_at_ = time_++;
   long long flips_left = 4LL * mesh_.halfedge_slots();
   while (!stack.empty() && flips_left > 0) {
     const int h = stack.back();
@@ -179,14 +181,14 @@ void SurfaceRemesher::flip_edges() {
     checkpoint();
     if (!wants_flip(h)) continue;
     const int o = mesh_.opposite(h);
-    has_changed_[h / 3] = has_changed_[o / 3] = 1;
+    changed_at_[h / 3] = changed_at_[o / 3] = time_;
     if (!mesh_.can_flip(h) || !flip_keeps_shape(h)) continue;
     mesh_.flip_edge(h);
     --flips_left;
     for (const int k : {EditableMesh::next(h), EditableMesh::previous(h), EditableMesh::next(o), EditableMesh::previous(o)})
       stack.push_back(k);
   }
-  for (const int h : stack) has_changed_[h / 3] = 1;
+  for (const int h : stack) changed_at_[h / 3] = time_;
 }
 
 /// Where neither a collapse nor a flip could remove a face without area, one of its corners moves by a hair.
@@ -197,10 +199,12 @@ void SurfaceRemesher::open_faces_without_area() {
 
 /// One colour after the other: vertices of a colour have no face in common, so that each moves as if alone.
 void SurfaceRemesher::relax() {
-  for (const std::vector<int>& vertices : free_vertices_by_colour())
+  for (const std::vector<int>& vertices : free_vertices_by_colour()) {
+    ++time_;
     parallel_chunks(static_cast<int>(vertices.size()), context_, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) relax_vertex(vertices[i]);
     });
+  }
 }
 
 /// The vertices off features in groups without neighbours: each gets the first colour that no neighbour has.

@@ -39,9 +39,12 @@ class SurfaceRemesher {
     return !is_feature(h) && vertex_[mesh_.from(h)].on_feature && vertex_[mesh_.to(h)].on_feature;
   }
   /// Whether a face at the edge is other than when flip_edges() last looked at it.
-  bool has_changed(int h) const { return has_changed_[h / 3] || (mesh_.opposite(h) >= 0 && has_changed_[mesh_.opposite(h) / 3]); }
+  bool has_changed(int h) const {
+    const int o = mesh_.opposite(h);
+    return changed_at_[h / 3] > flipped_at_ || (o >= 0 && changed_at_[o / 3] > flipped_at_);
+  }
   void set_changed_around(int v) {
-    mesh_.visit_outgoing(v, [this](int h) { has_changed_[h / 3] = 1; });
+    mesh_.visit_outgoing(v, [this](int h) { changed_at_[h / 3] = time_; });
   }
   void checkpoint() { if ((++work_ & 0x3fff) == 0) context_.checkpoint(progress_); }
 
@@ -65,6 +68,7 @@ class SurfaceRemesher {
   bool keeps_shape(int h, double& error) const;
   bool wants_flip(int h) const;
   bool flip_keeps_shape(int h) const;
+  bool has_changed_around(int v) const;
   void relax_vertex(int v);
   bool try_open(int f);
   bool move_keeps_shape(int v, const Vector3& p) const;
@@ -78,7 +82,10 @@ class SurfaceRemesher {
   const SurfaceIndex& index_;
   EditableMesh mesh_;
   std::vector<VertexData> vertex_;
-  std::vector<char> has_changed_;  ///< by face: flip_edges() has to look at its edges
+  // Where nothing has changed since edges and vertices were last looked at, they are as they should be.
+  int time_ = 1, flipped_at_ = 0;
+  std::vector<int> changed_at_;  ///< by face
+  std::vector<int> relaxed_at_;  ///< by vertex
   std::vector<int> curve_edges_, curve_originals_;  ///< edges of each curve; input vertices left inside it
   std::vector<char> curve_is_loop_;
   bool final_phase_ = false;  ///< no operation may join two feature vertices any more
