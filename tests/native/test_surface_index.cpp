@@ -163,7 +163,7 @@ TEST(NeedleAxes, LieAlongNeedlesOfOneDirection) {
 }
 
 TEST(SurfaceIndex, SameForAnyNumberOfThreads) {
-  const TriangleMesh m = test::torus(40, 20);
+  const TriangleMesh m = test::torus(97, 45);
   const SurfaceIndex one(m, {}), three(m, {}, 3);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-2, 2);

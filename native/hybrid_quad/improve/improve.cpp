@@ -48,9 +48,9 @@ Workpiece workpiece_of(const QuadMesh& quads, const TriangleMesh& input, const F
   return piece;
 }
 
-void bind(Workpiece& piece) {
+void bind(Workpiece& piece, const RunContext& context) {
   constexpr double kCurvatureWeight = 20;
-  piece.bind_all();
+  piece.bind_all(context);
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
 }
 
@@ -67,7 +67,7 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   if (!(piece.h > 0)) return report;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
-  bind(piece);
+  bind(piece, context);
   Smoother smoother(piece, smoothing_of(options, context.threads));
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
@@ -188,7 +188,7 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
   constexpr int kSweeps = 5;
   Workpiece piece = workpiece_of(quads, input, features, index, options);
   if (!(piece.h > 0)) return 0;
-  bind(piece);
+  bind(piece, context);
   Smoother smoother(piece, smoothing_of(options, context.threads));
   smoother.update_frames(true);
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement);

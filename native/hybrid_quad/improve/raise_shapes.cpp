@@ -23,7 +23,7 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return 0;
-  piece.locate_all();
+  piece.locate_all(context);
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
   int raised = 0;

@@ -256,7 +256,7 @@ int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGra
   Workpiece piece(quads, input, features, index);
   if (options.target_length > 0) piece.h = options.target_length;
   if (!(piece.h > 0)) return 0;
-  piece.locate_all();
+  piece.locate_all(context);
   const FlawMeasure measure(piece, whole ? *whole : index, options.agreement, &options.least_agreement);
   const int reached = Reaching(piece, measure, options, std::move(witnesses), context.threads).run(context);
   if (reached > 0) quads = piece.mesh.extract(piece.face);

@@ -104,7 +104,7 @@ class FlawedRefiner {
   Workpiece located(const QuadMesh& mesh) const {
     Workpiece piece(mesh, input_, features_, index_);
     if (options_.target_length > 0) piece.h = options_.target_length;
-    piece.locate_all();
+    piece.locate_all(context_);
     return piece;
   }
 

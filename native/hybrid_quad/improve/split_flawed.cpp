@@ -68,7 +68,7 @@ class FlawedSplitter {
   /// then are these.
   bool split_any(std::vector<int>& flawed) {
     Workpiece piece(quads_, input_, features_, index_);
-    piece.locate_all();
+    piece.locate_all(context_);
     const SideSplitter splitter(quads_, index_, piece.region);
     std::optional<Outcome> best;
     for (const int q : flawed) {
@@ -138,7 +138,7 @@ class FlawedSplitter {
     Workpiece piece(mesh, input_, features_, index_);
     if (options_.target_length > 0) piece.h = options_.target_length;
     if (!(piece.h > 0)) return;
-    piece.locate_all();
+    piece.locate_all(context_);
     SmootherOptions smoothing;
     smoothing.threads = context_.threads;
     Smoother smoother(piece, smoothing);

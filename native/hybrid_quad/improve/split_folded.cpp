@@ -190,7 +190,7 @@ class FoldedSplitter {
   Workpiece located(const QuadMesh& mesh) const {
     Workpiece piece(mesh, input_, features_, index_);
     piece.h = edge_;
-    piece.locate_all();
+    piece.locate_all(context_);
     return piece;
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -43,7 +45,7 @@ Workpiece::Workpiece(const QuadMesh& quads, const TriangleMesh& input_mesh, cons
   for (const int r : features.face_region) region_count = std::max(region_count, r + 1);
 }
 
-void Workpiece::bind_all() {
+void Workpiece::bind_all(const RunContext& context) {
   find_quad_regions();
   std::vector<Vector3> normals(mesh.vertex_count(), Vector3::Zero());
   for (int q = 0; q < mesh.quad_count(); ++q) {
@@ -51,20 +53,22 @@ void Workpiece::bind_all() {
     const Vector3 n = (mesh.positions[v[2]] - mesh.positions[v[0]]).cross(mesh.positions[v[3]] - mesh.positions[v[1]]);
     for (const int corner : v) normals[corner] += n;
   }
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (mesh.is_free(v)) {
-      const Vector3 extracted = mesh.positions[v];
-      bind_free(v, normals[v]);
-      if (mesh.is_pinned(v)) mesh.positions[v] = extracted;
-    } else if (mesh.kind(v) == VertexKind::kCorner && mesh.anchor(v) >= 0 && mesh.anchor(v) < input.vertex_count()) {
-      mesh.positions[v] = input.position(mesh.anchor(v));
-    }
+  parallel_chunks(mesh.vertex_count(), context, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v)
+      if (mesh.is_free(v)) {
+        const Vector3 extracted = mesh.positions[v];
+        bind_free(v, normals[v]);
+        if (mesh.is_pinned(v)) mesh.positions[v] = extracted;
+      } else if (mesh.kind(v) == VertexKind::kCorner && mesh.anchor(v) >= 0 && mesh.anchor(v) < input.vertex_count()) {
+        mesh.positions[v] = input.position(mesh.anchor(v));
+      }
+  });
   place_on_curves();
 }
 
-void Workpiece::locate_all() {
+void Workpiece::locate_all(const RunContext& context) {
   const std::vector<Vector3> positions = mesh.positions;
-  bind_all();
+  bind_all(context);
   mesh.positions = positions;
 }
 

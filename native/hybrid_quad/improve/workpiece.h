@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/improve/curve_geometry.h"
 #include "hybrid_quad/improve/edit_mesh.h"
@@ -35,9 +36,9 @@ struct Workpiece {
   std::vector<int> region;            ///< #Q: region of the input the quad covers, -1 if unknown
 
   /// Puts all vertices where their kind allows: corners and curve vertices exactly, free ones at the nearest point.
-  void bind_all();
+  void bind_all(const RunContext& context = {});
   /// Finds these places, and leaves the vertices where they are: a fitted mesh is not on the surface.
-  void locate_all();
+  void locate_all(const RunContext& context = {});
   /// Puts free vertex v at the point of its region nearest to where it is, on a face that looks along `normal`
   /// (zero: any).
   void bind_free(int v, const Vector3& normal);

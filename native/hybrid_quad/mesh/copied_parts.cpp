@@ -1,9 +1,11 @@
 #include "hybrid_quad/mesh/copied_parts.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <tuple>
 
+#include "hybrid_quad/mesh/bucket_sort.h"
 #include "hybrid_quad/mesh/vertex_welding.h"
 
 namespace hybrid_quad {
@@ -50,13 +52,15 @@ std::vector<char> copied_parts(const std::vector<Vector3>& positions, const std:
   std::vector<char> is_copied(faces.size(), 0);
   const std::vector<int> part_of = part_of_vertices(positions.size(), faces), place = places_of(positions);
   // Groups of triangles in one place, with the parts that have one there.
-  std::vector<std::tuple<std::array<int, 3>, int>> keys;
+  using Key = std::tuple<std::array<int, 3>, int>;
+  std::vector<Key> keys;
+  keys.reserve(faces.size());
   for (const auto& f : faces) {
     std::array<int, 3> key{place[f[0]], place[f[1]], place[f[2]]};
     std::sort(key.begin(), key.end());
     keys.emplace_back(key, part_of[f[0]]);
   }
-  std::sort(keys.begin(), keys.end());
+  bucket_sort(keys, [](const Key& key) { return std::get<0>(key)[0]; }, std::less<>());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::vector<std::vector<int>> groups_of(positions.size());
   std::vector<int> cover;  // parts that a group has, those that went left out

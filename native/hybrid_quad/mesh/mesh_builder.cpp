@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/bucket_sort.h"
 #include "hybrid_quad/mesh/canonical_order.h"
 #include "hybrid_quad/mesh/copied_parts.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
@@ -228,14 +230,15 @@ void MeshBuilder::weld() {
 }
 
 void MeshBuilder::drop_duplicates() {
-  std::vector<std::pair<std::array<int, 3>, int>> keys;
+  using Key = std::pair<std::array<int, 3>, int>;
+  std::vector<Key> keys;
   keys.reserve(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     std::array<int, 3> key = triangles_[i];
     std::sort(key.begin(), key.end());
     keys.push_back({key, static_cast<int>(i)});
   }
-  std::sort(keys.begin(), keys.end());
+  bucket_sort(keys, [](const Key& key) { return key.first[0]; }, std::less<>());
   std::vector<char> is_copy(triangles_.size(), 0);
   for (std::size_t i = 1; i < keys.size(); ++i)
     if (keys[i].first == keys[i - 1].first) is_copy[keys[i].second] = 1;

@@ -1,10 +1,12 @@
 #include "hybrid_quad/mesh/quad_complex.h"
 
 #include <algorithm>
+#include <functional>
 #include <tuple>
 #include <utility>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
 
@@ -24,7 +26,7 @@ QuadComplex complex_of_quads(std::vector<Vector3> positions, const std::vector<s
   sides.reserve(darts);
   for (int d = 0; d < darts; ++d)
     sides.push_back({std::min(complex.from(d), complex.to(d)), std::max(complex.from(d), complex.to(d)), d});
-  std::sort(sides.begin(), sides.end());
+  bucket_sort(sides, [](const std::array<int, 3>& side) { return side[0]; }, std::less<>());
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t j = i + 1;
     while (j < sides.size() && sides[j][0] == sides[i][0] && sides[j][1] == sides[i][1]) ++j;

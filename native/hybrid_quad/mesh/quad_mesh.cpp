@@ -86,13 +86,13 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
   for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const int begin = first[v], end = first[v + 1], valence = end - begin;
-    const std::string name = "vertex " + std::to_string(v);
+    const auto name = [v] { return "vertex " + std::to_string(v); };
     if (valence == 0) {
-      found.push_back(name + " belongs to no quad");
+      found.push_back(name() + " belongs to no quad");
       continue;
     }
     if (!on_border[v] && valence < 3)
-      found.push_back("interior " + name + " has " + std::to_string(valence) + " faces");
+      found.push_back("interior " + name() + " has " + std::to_string(valence) + " faces");
     const auto corner_from = [&](int before) {
       const auto at = std::lower_bound(corners.begin() + begin, corners.begin() + end, before,
                                        [](const Corner& c, int w) { return c.before < w; });
@@ -113,7 +113,7 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
       c = corner_from(corners[c].after);
       if (c == start) break;
     }
-    if (length != valence) found.push_back(name + " has more than one fan");
+    if (length != valence) found.push_back(name() + " has more than one fan");
   }
 }
 

@@ -237,6 +237,16 @@ class TreeBuilder {
     return parts;
   }
 
+  /// The same across the coordinate axes, and both halves at once.
+  Parts quartered_by_halves(const Range& range, int threads) {
+    if (range.size() < 2 * kWidth) return quartered(range, Matrix3::Identity());
+    std::array<Range, 2> halves{range}, ends;
+    halves[1] = halve(halves[0], Matrix3::Identity());
+    parallel_for(2, threads, [&](int i) { ends[i] = halve(halves[i], Matrix3::Identity()); });
+    const bool is_second_larger = range.size() % 2 != 0;  // and quartered before the first
+    return {{halves[0], halves[1], ends[is_second_larger], ends[!is_second_larger]}, kWidth};
+  }
+
   /// To the axes of the boxes of a range.
   Matrix3 turn_of(const Range& range) const {
     if (needles_.empty()) return Matrix3::Identity();
@@ -310,13 +320,18 @@ void SurfaceIndex::Tree::build(int threads) {
   if (face_count == 0) return;
   std::vector<Item> items(face_count);
   normal.resize(face_count);
+  constexpr int kChunk = 4096;
+  std::vector<Box> box_of_chunk((face_count + kChunk - 1) / kChunk);
+  parallel_for(static_cast<int>(box_of_chunk.size()), threads, [&](int c) {
+    for (int f = c * kChunk; f < std::min(face_count, (c + 1) * kChunk); ++f) {
+      const Box box = box_of(f);
+      items[f] = {0.5 * (box.low + box.high), f};
+      normal[f] = mesh.normal(f);
+      box_of_chunk[c].add(box);
+    }
+  });
   Box all;
-  for (int f = 0; f < face_count; ++f) {
-    const Box box = box_of(f);
-    items[f] = {0.5 * (box.low + box.high), f};
-    normal[f] = mesh.normal(f);
-    all.add(box);
-  }
+  for (const Box& box : box_of_chunk) all.add(box);
   origin = 0.5 * (all.low + all.high);
   const double size = (all.high - all.low).maxCoeff();
   scale = size > 0 && std::isfinite(1 / size) ? 1 / size : 1;
@@ -325,7 +340,7 @@ void SurfaceIndex::Tree::build(int threads) {
   // The root's children are trees of their own, which come one after the other behind it.
   const NeedleAxes needles(mesh);
   TreeBuilder builder(items, needles);
-  const TreeBuilder::Parts parts = builder.quartered({0, face_count}, Matrix3::Identity());
+  const TreeBuilder::Parts parts = builder.quartered_by_halves({0, face_count}, threads);
   std::array<std::vector<Node>, kWidth> below;
   std::array<std::vector<Matrix3>, kWidth> turns_below;
   parallel_for(parts.count, threads, [&](int k) {

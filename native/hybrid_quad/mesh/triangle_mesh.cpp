@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
 
@@ -23,7 +24,7 @@ std::vector<int> pair_halfedges(const std::vector<std::array<int, 3>>& faces) {
       const int a = faces[f][i], b = faces[f][(i + 1) % 3];
       entries.push_back({std::min(a, b), std::max(a, b), 3 * f + i});
     }
-  std::sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) {
+  bucket_sort(entries, [](const Entry& x) { return x.low; }, [](const Entry& x, const Entry& y) {
     return std::tie(x.low, x.high, x.halfedge) < std::tie(y.low, y.high, y.halfedge);
   });
   std::vector<int> opposite(3 * faces.size(), -1);

@@ -35,14 +35,19 @@ class VertexSets {
 }  // namespace
 
 std::vector<int> places_of(const std::vector<Vector3>& positions) {
-  std::vector<int> order(positions.size()), place(positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&positions](int v, int w) {
-    const Vector3 &p = positions[v], &q = positions[w];
-    return std::make_tuple(p.x(), p.y(), p.z(), v) < std::make_tuple(q.x(), q.y(), q.z(), w);
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    place[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? place[order[i - 1]] : order[i];
+  struct Point {
+    double x, y, z;
+    int vertex;
+    bool is_at(const Point& o) const { return x == o.x && y == o.y && z == o.z; }
+    bool operator<(const Point& o) const { return std::tie(x, y, z, vertex) < std::tie(o.x, o.y, o.z, o.vertex); }
+  };
+  std::vector<Point> points;
+  points.reserve(positions.size());
+  for (const Vector3& p : positions) points.push_back({p.x(), p.y(), p.z(), static_cast<int>(points.size())});
+  std::sort(points.begin(), points.end());
+  std::vector<int> place(positions.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    place[points[i].vertex] = i > 0 && points[i].is_at(points[i - 1]) ? place[points[i - 1].vertex] : points[i].vertex;
   return place;
 }
 

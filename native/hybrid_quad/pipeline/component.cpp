@@ -66,20 +66,18 @@ bool has_inner_features(const ComponentPlan& plan) {
 }
 
 struct Extractable {
-  ComponentPlan plan;
   bool are_few = false;  ///< quads to be taken out afterwards
-  bool is_rough = false;  ///< it is a plan for more quads than there are to be
+  std::optional<ComponentPlan> rough;  ///< for more quads than there are to be; none: the plan as it is
 };
 
 /// Far fewer quads than handles call for can't be extracted; they are taken out afterwards. Not along features, whose
 /// edges stay: fewer are to be asked for from the start.
-Extractable extractable_plan(const ComponentPlan& planned, double count) {
+Extractable extractable(const ComponentPlan& planned, double count) {
   constexpr double kExtractable = 0.5;
   const double least = kExtractable * quads_for_topology(planned.mesh);
-  Extractable out{planned, false, false};
+  Extractable out;
   out.are_few = planned.guides.empty() && count < least && planned.quads < least;
-  out.is_rough = out.are_few && !has_inner_features(planned);
-  if (out.is_rough) scale_plan(out.plan, least / planned.quads);
+  if (out.are_few && !has_inner_features(planned)) scale_plan(out.rough.emplace(planned), least / planned.quads);
   return out;
 }
 
@@ -134,8 +132,8 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context) {
   const double count = std::max<double>(wanted, fewest_quads(planned.mesh));
-  const Extractable extractable = extractable_plan(planned, count);
-  const bool are_few = extractable.are_few, is_rough = extractable.is_rough;
+  const Extractable found = extractable(planned, count);
+  const bool are_few = found.are_few, is_rough = found.rough.has_value();
   ComponentResult best;
   ComponentPlan fewer_features;
   const ComponentPlan* plan_of_best = &planned;
@@ -157,7 +155,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       fewer_features = without_features_at(planned, flawed, options.symmetry.planes, context);
       if (fewer_features.given_way == planned.given_way) continue;
     }
-    const ComponentPlan& plan = without_features ? fewer_features : extractable.plan;
+    const ComponentPlan& plan = without_features ? fewer_features : is_rough ? *found.rough : planned;
     if (any && is_done(best, extracted, plan.quads)) break;
     const bool refined = !limits.empty() || settings.quads_factor != 1 || as_needed;
     const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
@@ -271,16 +269,16 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
 ComponentPreview preview_component(const ComponentPlan& planned, double wanted, const SurfaceIndex* whole,
                                    const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
                                    StageClock& clock, const RunContext& context) {
-  const Extractable extractable = extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh)));
+  const Extractable found = extractable(planned, std::max<double>(wanted, fewest_quads(planned.mesh)));
   PassSettings settings;
-  settings.is_rough = extractable.is_rough;
-  return preview_pass(extractable.plan, whole, wishes, guides, options, settings, clock, context);
+  settings.is_rough = found.rough.has_value();
+  return preview_pass(found.rough ? *found.rough : planned, whole, wishes, guides, options, settings, clock, context);
 }
 
 ComponentResult remesh_component(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                  const RunContext& context) {
-  const bool is_extractable = !extractable_plan(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
+  const bool is_extractable = !extractable(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
   std::optional<FirstPass> first;
   if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context);
   if (first) return remesh_in_passes(first->plan, std::move(first->result), wanted, whole, wishes, guides, options, budget, clock, context);

@@ -87,19 +87,19 @@ void Finishing::make_mirrorable(QuadMesh& mesh, const RunContext& context) const
 }
 
 std::vector<int> Finishing::flawed(const QuadMesh& mesh, int threads) const {
-  return flawed_quads(mesh, whole_, least_agreement(whole_), threads);
+  return flawed_quads(mesh, whole_, improve_.least_agreement, threads);
 }
 
 int Finishing::split_flawed(QuadMesh& mesh, const RunContext& context) const {
   const int splits =
-      split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, least_agreement(whole_), context, &whole_);
+      split_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, improve_.least_agreement, context, &whole_);
   if (splits > 0) settle_features(mesh);
   return splits;
 }
 
 int Finishing::refine_flawed(QuadMesh& mesh, const RunContext& context) const {
   const int places =
-      refine_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, least_agreement(whole_), context, &whole_);
+      refine_flawed_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, improve_.least_agreement, context, &whole_);
   if (places > 0) settle_features(mesh);
   return places;
 }
@@ -132,7 +132,7 @@ void Finishing::settle_features(QuadMesh& mesh) const {
 Doubts Finishing::doubts(const QuadMesh& mesh, int threads) const {
   Doubts found;
   found.doubtful = flawed_quads(mesh, whole_, improve_.agreement, threads);
-  found.flawed = flawed_among(found.doubtful, mesh, whole_, least_agreement(whole_));
+  found.flawed = flawed_among(found.doubtful, mesh, whole_, improve_.least_agreement);
   return found;
 }
 
