@@ -118,7 +118,7 @@ double deviation_of(const Workpiece& piece, const Chain& chain) {
 bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double largest) {
   constexpr int kRings = 3, kSweeps = 4;
   constexpr double kEps = 1e-3;
-  constexpr double kShares[] = {0.3, 0.15, 0.07};  // of the shorter edge at a vertex: how far it may move
+  constexpr double kShares[] = {0.4, 0.15, 0.07};  // of the shorter edge at a vertex: how far it may move
   const CurveGeometry& curve = piece.curves[piece.mesh.anchor(chain.vertices[0])];
   const Place place(piece, chain, kRings);
   std::vector<double> quality;
