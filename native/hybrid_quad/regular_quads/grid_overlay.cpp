@@ -240,7 +240,7 @@ class OverlayBuilder {
     if (!along) std::reverse(part.points.begin() + before, part.points.end());
   }
 
-  /// The face's border with all cut points, counterclockwise.
+  /// \param polygon  becomes the face's border with all cut points, counterclockwise
   void find_border(int f, Polygon& polygon) const {
     polygon.clear();
     for (int i = 0; i < 3; ++i) {
@@ -446,7 +446,7 @@ class OverlayBuilder {
   void pair_segments(Segment* begin, Segment* end) {
     std::sort(begin, end, [](const Segment& x, const Segment& y) { return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge); });
     while (begin < end) {
-      const Segment* next = std::find_if(begin, end, [begin](const Segment& s) { return s.high != begin->high; });
+      Segment* const next = std::find_if(begin, end, [begin](const Segment& s) { return s.high != begin->high; });
       if (next - begin > 2) throw InternalError("regular quads", "pieces of the grid overlay do not fit together");
       const int x = begin[0].halfedge;
       if (next - begin == 2) {
@@ -457,7 +457,7 @@ class OverlayBuilder {
       } else if (out_.surface_halfedge[x] < 0 || mesh_.opposite(out_.surface_halfedge[x]) >= 0) {
         throw InternalError("regular quads", "the grid overlay has a gap");
       }
-      begin += next - begin;
+      begin = next;
     }
   }
 
