@@ -68,6 +68,40 @@ TEST(RegularQuads, OverlayKeepsTheArea) {
   EXPECT_NEAR(area, 108, 1e-9);
 }
 
+TEST(RegularQuads, AnyNumberOfThreadsGivesTheSameBits) {
+  Scene s = rectangle(60, 50, 80, 70);
+  std::mt19937 random(1);
+  for (char& r : s.param.is_regular) r = random() % 100 < 95;
+  const auto extracted = [&](int threads) {
+    RunContext context;
+    context.threads = threads;
+    return extract_regular_quads(s.surface, s.frames, s.param, context);
+  };
+  const RegularQuads one = extracted(1);
+  for (const int threads : {2, 3}) {
+    const RegularQuads many = extracted(threads);
+    EXPECT_EQ(many.side, one.side);
+    EXPECT_EQ(many.piece_cell, one.piece_cell);
+    const GridOverlay &a = many.overlay, &b = one.overlay;
+    EXPECT_EQ(a.piece_begin, b.piece_begin);
+    EXPECT_EQ(a.piece_face, b.piece_face);
+    EXPECT_EQ(a.piece_regular, b.piece_regular);
+    EXPECT_EQ(a.origin, b.origin);
+    EXPECT_EQ(a.opposite, b.opposite);
+    EXPECT_EQ(a.piece_of, b.piece_of);
+    EXPECT_EQ(a.on_isoline, b.on_isoline);
+    EXPECT_EQ(a.curve, b.curve);
+    EXPECT_EQ(a.uv, b.uv);
+    EXPECT_EQ(a.surface_halfedge, b.surface_halfedge);
+    ASSERT_EQ(a.vertices.size(), b.vertices.size());
+    for (std::size_t v = 0; v < a.vertices.size(); ++v) {
+      EXPECT_EQ(a.vertices[v].position, b.vertices[v].position);
+      EXPECT_EQ(a.vertices[v].surface_vertex, b.vertices[v].surface_vertex);
+      EXPECT_EQ(a.vertices[v].grid_sign, b.vertices[v].grid_sign);
+    }
+  }
+}
+
 /// Whatever faces lose their parameterization, patches fill the hole and the whole stays a disk with the same border.
 TEST(RegularQuads, PatchesFillWhatIsNotRegular) {
   std::mt19937 random(1);

@@ -78,7 +78,7 @@ TEST(MultifrontalCholesky, SolvesWhatAMeshCouples) {
     const Eigen::VectorXd b = some_vector(problem.lower.rows());
     MultifrontalCholesky factor(problem.lower, problem.places, RunContext{});
     ASSERT_TRUE(factor.factorize(problem.lower, 0, RunContext{})) << side;
-    const Eigen::VectorXd x = factor.solve(b);
+    const Eigen::VectorXd x = factor.solve(b, 1);
     EXPECT_LT((problem.lower.selfadjointView<Eigen::Lower>() * x - b).norm(), 1e-9 * b.norm()) << side;
   }
 }
@@ -89,7 +89,7 @@ TEST(MultifrontalCholesky, DoesNotDependOnWhereTheUnknownsAre) {
   const Eigen::VectorXd b = some_vector(problem.lower.rows());
   MultifrontalCholesky factor(problem.lower, problem.places, RunContext{});
   ASSERT_TRUE(factor.factorize(problem.lower, 0.5, RunContext{}));
-  const Eigen::VectorXd x = factor.solve(b);
+  const Eigen::VectorXd x = factor.solve(b, 1);
   EXPECT_LT((problem.lower.selfadjointView<Eigen::Lower>() * x + 0.5 * x - b).norm(), 1e-9 * b.norm());
 }
 
@@ -100,7 +100,7 @@ TEST(MultifrontalCholesky, AnyNumberOfThreadsGivesTheSameBits) {
     context.threads = threads;
     MultifrontalCholesky factor(problem.lower, problem.places, context);
     EXPECT_TRUE(factor.factorize(problem.lower, 0, context));
-    return factor.solve(some_vector(problem.lower.rows()));
+    return factor.solve(some_vector(problem.lower.rows()), threads);
   };
   const Eigen::VectorXd one = solution(1);
   for (const int threads : {2, 5}) EXPECT_EQ(solution(threads), one) << threads;

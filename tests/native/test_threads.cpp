@@ -56,10 +56,16 @@ TEST(Threads, EveryStageGivesTheSameBits) {
   EXPECT_EQ(many.report.hausdorff_percent, one.report.hausdorff_percent);
 }
 
+/// Parents of the nodes of a forest, or -1.
+std::vector<int> some_forest(int count) {
+  std::vector<int> parent(count, -1);
+  for (int i = 0; i + 1 < count; ++i) parent[i] = i % 10 == 9 ? -1 : i + 1 + (i * 7) % (count - i - 1);
+  return parent;
+}
+
 TEST(Threads, NodesOfAForestComeAfterTheirChildren) {
   constexpr int kCount = 1000;
-  std::vector<int> parent(kCount, -1);
-  for (int i = 0; i + 1 < kCount; ++i) parent[i] = i % 10 == 9 ? -1 : i + 1 + (i * 7) % (kCount - i - 1);
+  const std::vector<int> parent = some_forest(kCount);
   std::vector<std::atomic<int>> left(kCount);
   for (const int p : parent)
     if (p >= 0) ++left[p];
@@ -70,6 +76,19 @@ TEST(Threads, NodesOfAForestComeAfterTheirChildren) {
     ++done;
   });
   EXPECT_EQ(done, kCount);
+  EXPECT_EQ(early, 0);
+}
+
+TEST(Threads, NodesOfAForestComeAfterTheirParents) {
+  constexpr int kCount = 1000;
+  const std::vector<int> parent = some_forest(kCount);
+  std::vector<std::atomic<int>> done(kCount);
+  std::atomic<int> early{0};
+  parallel_forest_downwards(parent, 4, [&](int i) {
+    early += parent[i] >= 0 && done[parent[i]] == 0;
+    ++done[i];
+  });
+  for (const auto& d : done) EXPECT_EQ(d, 1);
   EXPECT_EQ(early, 0);
 }
 

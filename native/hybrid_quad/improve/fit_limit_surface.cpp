@@ -82,7 +82,7 @@ class LimitFit {
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::VectorXd right(unknown_.size());
         for (std::size_t i = 0; i < unknown_.size(); ++i) right[i] = pull(unknown_[i], axis);
-        const Eigen::VectorXd solution = factor.solve(right);
+        const Eigen::VectorXd solution = factor.solve(right, context_.threads);
         for (std::size_t i = 0; i < unknown_.size(); ++i) moves(unknown_[i], axis) = solution[i];
       }
     }

@@ -87,9 +87,12 @@ void MultifrontalCholesky::plan_tasks() {
     task_end_.push_back(p + 1);
   }
   task_parent_.assign(task_end_.size(), -1);
+  task_children_.resize(task_end_.size());
   for (std::size_t t = 0; t < task_end_.size(); ++t) {
     const int above = parent[task_end_[t] - 1];
-    if (above >= 0) task_parent_[t] = task[above];
+    if (above < 0) continue;
+    task_parent_[t] = task[above];
+    task_children_[task[above]].push_back(static_cast<int>(t));
   }
 }
 
@@ -103,7 +106,7 @@ bool MultifrontalCholesky::factorize(const SparseMatrix& lower, double shift, co
   std::atomic<bool> is_definite{true};
   parallel_forest(task_parent_, context.threads, [&](int t) {
     each.checkpoint();
-    for (int p = t > 0 ? task_end_[t - 1] : 0; p < task_end_[t] && is_definite; ++p)
+    for (int p = task_begin(t); p < task_end_[t] && is_definite; ++p)
       if (!eliminate(p, shift, left_over)) is_definite = false;
   });
   return is_definite;
@@ -148,10 +151,30 @@ bool MultifrontalCholesky::eliminate(std::size_t which, double shift, std::vecto
   return true;
 }
 
-VectorXd MultifrontalCholesky::solve(const VectorXd& right_side) const {
-  VectorXd x(right_side.size()), beyond;
+VectorXd MultifrontalCholesky::solve(const VectorXd& right_side, int threads) const {
+  VectorXd x(right_side.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[place_[i]] = right_side[i];
-  for (const Front& front : fronts_) {
+  std::vector<std::vector<Taken>> taken(task_end_.size());
+  parallel_forest(task_parent_, threads, [&](int t) { solve_forwards(t, taken, x); });
+  parallel_forest_downwards(task_parent_, threads, [&](int t) { solve_backwards(t, x); });
+  VectorXd result(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) result[i] = x[place_[i]];
+  return result;
+}
+
+/// \param taken  what is to be taken from unknowns behind every task, in the order of the fronts that it comes from, so that it does
+///               not matter to a sum which was done first
+void MultifrontalCholesky::solve_forwards(int task, std::vector<std::vector<Taken>>& taken, VectorXd& x) const {
+  const int end = fronts_[task_end_[task] - 1].end;
+  const auto take = [&](int place, double value) {
+    if (place < end) x[place] -= value;
+    else taken[task].push_back({place, value});
+  };
+  for (const int child : task_children_[task])
+    for (const Taken& t : taken[child]) take(t.place, t.value);
+  VectorXd beyond;
+  for (int p = task_begin(task); p < task_end_[task]; ++p) {
+    const Front& front = fronts_[p];
     const Eigen::Index own = front.own(), more = static_cast<Eigen::Index>(front.beyond.size());
     beyond.setZero(more);
     for (Eigen::Index j = 0; j < own; ++j) {
@@ -160,21 +183,23 @@ VectorXd MultifrontalCholesky::solve(const VectorXd& right_side) const {
       x.segment(front.begin + j + 1, own - j - 1) -= value * column.segment(j + 1, own - j - 1);
       beyond += value * column.tail(more);
     }
-    for (Eigen::Index i = 0; i < more; ++i) x[front.beyond[i]] -= beyond[i];
+    for (Eigen::Index i = 0; i < more; ++i) take(front.beyond[i], beyond[i]);
   }
-  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    const Eigen::Index own = front->own(), more = static_cast<Eigen::Index>(front->beyond.size());
+}
+
+void MultifrontalCholesky::solve_backwards(int task, VectorXd& x) const {
+  VectorXd beyond;
+  for (int p = task_end_[task]; p-- > task_begin(task);) {
+    const Front& front = fronts_[p];
+    const Eigen::Index own = front.own(), more = static_cast<Eigen::Index>(front.beyond.size());
     beyond.resize(more);
-    for (Eigen::Index i = 0; i < more; ++i) beyond[i] = x[front->beyond[i]];
+    for (Eigen::Index i = 0; i < more; ++i) beyond[i] = x[front.beyond[i]];
     for (Eigen::Index j = own - 1; j >= 0; --j) {
-      const auto column = front->column.col(j);
-      const double known = column.segment(j + 1, own - j - 1).dot(x.segment(front->begin + j + 1, own - j - 1));
-      x[front->begin + j] = (x[front->begin + j] - known - column.tail(more).dot(beyond)) / column[j];
+      const auto column = front.column.col(j);
+      const double known = column.segment(j + 1, own - j - 1).dot(x.segment(front.begin + j + 1, own - j - 1));
+      x[front.begin + j] = (x[front.begin + j] - known - column.tail(more).dot(beyond)) / column[j];
     }
   }
-  VectorXd result(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) result[i] = x[place_[i]];
-  return result;
 }
 
 }  // namespace hybrid_quad

@@ -20,7 +20,7 @@ class MultifrontalCholesky {
   /// \return false if a pivot is not positive
   bool factorize(const SparseMatrix& lower, double shift, const RunContext& context);
   /// \pre factorize() succeeded
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, int threads) const;
 
  private:
   /// A part's unknowns and those behind it that they are coupled with.
@@ -33,10 +33,19 @@ class MultifrontalCholesky {
     int own() const { return end - begin; }
   };
 
+  /// What a front takes from an unknown behind it.
+  struct Taken {
+    int place;
+    double value;
+  };
+
   void find_couplings();
   void place_entries(const SparseMatrix& lower);
   void plan_tasks();
   bool eliminate(std::size_t which, double shift, std::vector<Eigen::MatrixXd>& left_over);
+  int task_begin(int task) const { return task > 0 ? task_end_[task - 1] : 0; }
+  void solve_forwards(int task, std::vector<std::vector<Taken>>& taken, Eigen::VectorXd& x) const;
+  void solve_backwards(int task, Eigen::VectorXd& x) const;
 
   std::vector<int> place_;               ///< unknown to its place in the order of elimination
   std::vector<Front> fronts_;            ///< children before their parents
@@ -44,6 +53,7 @@ class MultifrontalCholesky {
   std::vector<double> value_;
   std::vector<int> task_end_;     ///< fronts of task t end here and begin where those of t - 1 end
   std::vector<int> task_parent_;  ///< the task that waits for t, -1: none
+  std::vector<std::vector<int>> task_children_;  ///< ascending
 };
 
 }  // namespace hybrid_quad

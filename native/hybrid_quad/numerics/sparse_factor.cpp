@@ -23,8 +23,8 @@ bool SparseFactor::factorize(const SparseMatrix& lower, double shift, const RunC
   return by_columns_->info() == Eigen::Success && by_columns_->vectorD().minCoeff() > 0;
 }
 
-Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
-  if (by_fronts_) return by_fronts_->solve(right_side);
+Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side, int threads) const {
+  if (by_fronts_) return by_fronts_->solve(right_side, threads);
   return by_columns_->solve(right_side);
 }
 

@@ -21,7 +21,7 @@ class SparseFactor {
   /// \return false if a pivot is not positive
   bool factorize(const SparseMatrix& lower, double shift, const RunContext& context);
   /// \pre factorize() succeeded
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, int threads) const;
 
  private:
   using ByColumns = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>;

@@ -48,7 +48,7 @@ Eigen::VectorXd solve_sparse(const SparseMatrix& lower, const Eigen::VectorXd& r
   Eigen::VectorXd residual = right_side;
   double left = size;
   for (int step = 0; step < kRefinements && left > kTolerance * size; ++step) {
-    const Eigen::VectorXd improved = x + factor.solve(residual);
+    const Eigen::VectorXd improved = x + factor.solve(residual, context.threads);
     const Eigen::VectorXd rest = right_side - lower.selfadjointView<Eigen::Lower>() * improved;
     if (!(rest.norm() < left)) break;
     x = improved;

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "hybrid_quad/mesh/bucket_sort.h"
+#include "hybrid_quad/base/parallel.h"
 
 namespace hybrid_quad {
 
@@ -55,6 +55,62 @@ struct Crossing {
   std::int64_t num, den;
 };
 
+/// Points of edges that are handled one after the other; each has a vertex, whose number in the part is `vertex`.
+struct EdgePart {
+  std::vector<EdgePoint> points;
+  std::vector<GridOverlay::Vertex> vertices;
+  std::vector<Crossing> crossings;  ///< of one edge
+
+  void add(std::int64_t num, std::int64_t den, const Vector3& p, std::int8_t sign) {
+    points.push_back({num, den, static_cast<int>(vertices.size())});
+    vertices.push_back({p, -1, sign});
+  }
+};
+
+/// A grid point inside a face, on a chord between strips.
+struct ChordPoint {
+  std::int64_t u, v;
+  int vertex;
+};
+
+/// A half-edge, listed with the lower end of its segment.
+struct Segment {
+  int high, halfedge;
+};
+
+/// What becomes of faces that are cut one after the other.
+struct FacePart {
+  struct Side {
+    int origin, halfedge, curve;
+    bool on_isoline;
+    Vector2 uv;
+  };
+  struct Piece {
+    int face, end;  ///< end: of its sides
+    bool regular;
+  };
+  std::vector<GridOverlay::Vertex> vertices;  ///< inside of faces; their numbers are counted on from the points on edges
+  std::vector<Side> sides;
+  std::vector<Piece> pieces;
+
+  // Of one face; they keep their memory.
+  Polygon border, with_points;
+  std::array<Polygon, 2> inner, outer;  ///< by axis
+  std::vector<ChordPoint> chord_points;
+};
+
+/// Calls work(i, part) for every i of [0, count), in order within a part; the parts, in order too, are made side by side.
+template <class Part, class Work>
+std::vector<Part> make_parts(int count, const RunContext& context, const Work& work) {
+  constexpr int kChunk = 512;
+  std::vector<Part> parts((count + kChunk - 1) / kChunk);
+  const auto make = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) work(i, parts[begin / kChunk]);
+  };
+  parallel_chunks(count, context, make, kChunk);
+  return parts;
+}
+
 class OverlayBuilder {
  public:
   OverlayBuilder(const WorkingSurface& surface, const SpanningParameterization& param, const CurveCoordinates& curves)
@@ -63,15 +119,11 @@ class OverlayBuilder {
   GridOverlay build(const RunContext& context) {
     find_cuttable_faces();
     add_surface_vertices();
-    edge_points_.resize(mesh_.halfedge_count());
-    for (int h = 0; h < mesh_.halfedge_count(); ++h)
-      if (mesh_.opposite(h) < h) add_edge_points(h);
-    out_.piece_begin.push_back(0);
-    for (int f = 0; f < mesh_.face_count(); ++f) {
-      if (f % 4096 == 0) context.checkpoint(0.7 * f / mesh_.face_count());
-      cut_face(f);
-    }
-    pair_halfedges();
+    add_edge_points(context);
+    context.checkpoint(0.2);
+    cut_faces(context);
+    context.checkpoint(0.7);
+    pair_halfedges(context);
     share_isolines();
     return std::move(out_);
   }
@@ -117,17 +169,30 @@ class OverlayBuilder {
 
   Vector3 point_on(int h, double t) const { return mesh_.position(mesh_.from(h)) * (1 - t) + mesh_.position(mesh_.to(h)) * t; }
 
-  int add_vertex(const Vector3& p, std::int8_t sign) {
-    out_.vertices.push_back({p, -1, sign});
-    return static_cast<int>(out_.vertices.size()) - 1;
+  /// Points where edges cross integer lines, kept on that half-edge of each that comes last, in its direction; its opposite
+  /// reads them backwards.
+  void add_edge_points(const RunContext& context) {
+    const int n = mesh_.halfedge_count();
+    points_begin_.assign(n + 1, 0);
+    const auto parts = make_parts<EdgePart>(n, context, [&](int h, EdgePart& part) {
+      const std::size_t before = part.points.size();
+      if (mesh_.opposite(h) < h) add_points_of(h, part);
+      points_begin_[h + 1] = static_cast<int>(part.points.size() - before);
+    });
+    for (int h = 0; h < n; ++h) points_begin_[h + 1] += points_begin_[h];
+    edge_points_.reserve(points_begin_[n]);
+    out_.vertices.reserve(out_.vertices.size() + points_begin_[n]);
+    for (const EdgePart& part : parts) {
+      const int before = static_cast<int>(out_.vertices.size());
+      for (const EdgePoint& p : part.points) edge_points_.push_back({p.num, p.den, p.vertex + before});
+      out_.vertices.insert(out_.vertices.end(), part.vertices.begin(), part.vertices.end());
+    }
   }
 
-  /// Points where the edge of h crosses integer lines, kept on h in its direction (its opposite reads them backwards).
-  void add_edge_points(int h) {
-    std::vector<EdgePoint>& points = edge_points_[h];
+  void add_points_of(int h, EdgePart& part) const {
     const int c = surface_.features.halfedge_curve[h];
     if (c >= 0) {
-      add_curve_points(h, c, points);
+      add_curve_points(h, c, part);
       return;
     }
     const int o = mesh_.opposite(h);
@@ -136,8 +201,9 @@ class OverlayBuilder {
     const int side = own ? h : o;
     const GridVector& start = param_.corner_uv[side];
     const GridVector& d = param_.halfedge_uv[side];
-    std::vector<Crossing>& crossings = crossings_;
+    std::vector<Crossing>& crossings = part.crossings;
     crossings.clear();
+    const auto before = static_cast<std::ptrdiff_t>(part.points.size());
     for (int axis = 0; axis < 2; ++axis) {
       if (d[axis] == 0) continue;
       const std::int64_t a = start[axis], b = a + d[axis];
@@ -156,30 +222,27 @@ class OverlayBuilder {
       std::int8_t sign = 0;
       if (u % 2 == 0 && v % 2 == 0) sign = (u + v) / 2 % 2 != 0 ? -1 : 1;
       const double t = static_cast<double>(x.num) / static_cast<double>(x.den);
-      const int vertex = add_vertex(point_on(side, t), sign);
-      points.push_back(own ? EdgePoint{x.num, x.den, vertex} : EdgePoint{x.den - x.num, x.den, vertex});
+      part.add(own ? x.num : x.den - x.num, x.den, point_on(side, t), sign);
     }
-    if (!own) std::reverse(points.begin(), points.end());
+    if (!own) std::reverse(part.points.begin() + before, part.points.end());
   }
 
-  void add_curve_points(int h, int c, std::vector<EdgePoint>& points) {
+  void add_curve_points(int h, int c, EdgePart& part) const {
     const int i = curves_.halfedge_index[h];
     const auto& curve = curves_.curves[c];
     const std::int64_t a = curve.position[i], b = curve.position[i + 1];
-    for (std::int64_t k = floor_div(a, kGridUnit) + 1; k * kGridUnit < b; ++k)
-      points.push_back({k * kGridUnit - a, b - a, 0});
     const bool along = mesh_.from(h) == surface_.features.curves[c].vertices[i];
-    for (EdgePoint& p : points) {
-      const std::int64_t k = (a + p.num) / kGridUnit;
-      if (!along) p.num = p.den - p.num;
-      p.vertex = add_vertex(point_on(h, static_cast<double>(p.num) / static_cast<double>(p.den)), curve_sign(c, k));
+    const auto before = static_cast<std::ptrdiff_t>(part.points.size());
+    for (std::int64_t k = floor_div(a, kGridUnit) + 1; k * kGridUnit < b; ++k) {
+      const std::int64_t num = along ? k * kGridUnit - a : b - k * kGridUnit;
+      part.add(num, b - a, point_on(h, static_cast<double>(num) / static_cast<double>(b - a)), curve_sign(c, k));
     }
-    if (!along) std::reverse(points.begin(), points.end());
+    if (!along) std::reverse(part.points.begin() + before, part.points.end());
   }
 
-  /// The face's border with all cut points, counterclockwise.
-  Polygon border_of(int f) const {
-    Polygon polygon;
+  /// \param polygon  becomes the face's border with all cut points, counterclockwise
+  void find_border(int f, Polygon& polygon) const {
+    polygon.clear();
     for (int i = 0; i < 3; ++i) {
       const int h = 3 * f + i, o = mesh_.opposite(h);
       const GridVector& a = param_.corner_uv[h];
@@ -194,31 +257,85 @@ class OverlayBuilder {
         polygon.push_back(corner);
       };
       add(0, 1, mesh_.from(h));
+      const auto begin = edge_points_.begin();
       if (o < h)
-        for (const EdgePoint& p : edge_points_[h]) add(p.num, p.den, p.vertex);
+        std::for_each(begin + points_begin_[h], begin + points_begin_[h + 1], [&](const EdgePoint& p) { add(p.num, p.den, p.vertex); });
       else
-        for (auto p = edge_points_[o].rbegin(); p != edge_points_[o].rend(); ++p) add(p->den - p->num, p->den, p->vertex);
+        for (int k = points_begin_[o + 1]; k-- > points_begin_[o];) {
+          const EdgePoint& p = edge_points_[k];
+          add(p.den - p.num, p.den, p.vertex);
+        }
     }
-    return polygon;
   }
 
-  void cut_face(int f) {
-    Polygon polygon = border_of(f);
+  void cut_faces(const RunContext& context) {
+    const int edge_vertices = static_cast<int>(out_.vertices.size());
+    const auto parts = make_parts<FacePart>(mesh_.face_count(), context, [&](int f, FacePart& part) { cut_face(f, part); });
+    const int count = static_cast<int>(parts.size());
+    std::vector<int> vertices(count + 1, edge_vertices), sides(count + 1, 0), pieces(count + 1, 0);  // where each part's go
+    for (int p = 0; p < count; ++p) {
+      vertices[p + 1] = vertices[p] + static_cast<int>(parts[p].vertices.size());
+      sides[p + 1] = sides[p] + static_cast<int>(parts[p].sides.size());
+      pieces[p + 1] = pieces[p] + static_cast<int>(parts[p].pieces.size());
+    }
+    out_.vertices.resize(vertices[count]);
+    resize_pieces(pieces[count], sides[count]);
+    parallel_for(count, context.threads, [&](int p) {
+      std::copy(parts[p].vertices.begin(), parts[p].vertices.end(), out_.vertices.begin() + vertices[p]);
+      put_pieces(parts[p], pieces[p], sides[p]);
+      for (int k = sides[p]; k < sides[p + 1]; ++k)
+        if (out_.origin[k] >= edge_vertices) out_.origin[k] += vertices[p] - edge_vertices;
+    });
+  }
+
+  void resize_pieces(int pieces, int sides) {
+    out_.piece_begin.assign(pieces + 1, 0);
+    out_.piece_face.resize(pieces);
+    out_.piece_regular.resize(pieces);
+    out_.origin.resize(sides);
+    out_.piece_of.resize(sides);
+    out_.on_isoline.resize(sides);
+    out_.curve.resize(sides);
+    out_.uv.resize(sides);
+    out_.surface_halfedge.resize(sides);
+  }
+
+  void put_pieces(const FacePart& part, int piece, int side) {
+    int k = 0;
+    for (const FacePart::Piece& p : part.pieces) {
+      out_.piece_begin[piece + 1] = side + p.end;
+      out_.piece_face[piece] = p.face;
+      out_.piece_regular[piece] = p.regular;
+      for (; k < p.end; ++k) {
+        const FacePart::Side& s = part.sides[k];
+        out_.origin[side + k] = s.origin;
+        out_.piece_of[side + k] = piece;
+        out_.on_isoline[side + k] = s.on_isoline;
+        out_.curve[side + k] = s.curve;
+        out_.uv[side + k] = s.uv;
+        out_.surface_halfedge[side + k] = s.halfedge;
+      }
+      ++piece;
+    }
+  }
+
+  void cut_face(int f, FacePart& part) const {
+    find_border(f, part.border);
     if (!cuttable_[f]) {
-      emit(polygon, f, false);
+      emit(part.border, f, false, part);
       return;
     }
-    std::vector<Polygon> strips = split(std::move(polygon), 0);
     // Grid points on the chords between strips, made once for the two strips that share them.
-    chord_points_.clear();
-    for (Polygon& strip : strips) insert_chord_points(strip, f);
-    for (Polygon& strip : strips)
-      for (const Polygon& piece : split(std::move(strip), 1)) emit(piece, f, true);
+    part.chord_points.clear();
+    split(part.border, 0, part, [&](Polygon& strip) {
+      insert_chord_points(strip, f, part);
+      split(strip, 1, part, [&](const Polygon& piece) { emit(piece, f, true, part); });
+    });
   }
 
-  /// Cuts a convex polygon along the lines place[axis] = 2 k that pass through its inside.
-  static std::vector<Polygon> split(Polygon rest, int axis) {
-    std::vector<Polygon> pieces;
+  /// Cuts a convex polygon along the lines place[axis] = 2 k that pass through its inside. Uses the pieces in ascending order.
+  template <class Use>
+  static void split(Polygon& rest, int axis, FacePart& part, const Use& use) {
     const auto by_place = [axis](const Corner& x, const Corner& y) { return x.place[axis] < y.place[axis]; };
     const auto [low, high] = std::minmax_element(rest.begin(), rest.end(), by_place);
     const std::int64_t begin = floor_div(low->place[axis], 2) + 1, end = high->place[axis];
@@ -234,21 +351,23 @@ class OverlayBuilder {
       }
       if (second < 0) throw InternalError("regular quads", "an integer line enters a face without leaving it");
       // The two parts share the chord first-second; which one lies below the line is told by any corner of it.
-      Polygon inner(rest.begin() + first, rest.begin() + second + 1), outer;
-      outer.insert(outer.end(), rest.begin() + second, rest.end());
+      Polygon &inner = part.inner[axis], &outer = part.outer[axis];
+      inner.assign(rest.begin() + first, rest.begin() + second + 1);
+      outer.assign(rest.begin() + second, rest.end());
       outer.insert(outer.end(), rest.begin(), rest.begin() + first + 1);
       inner.back().halfedge = -1;
       outer.back().halfedge = -1;
       const bool inner_is_below = inner[1].place[axis] < 2 * k;
-      pieces.push_back(inner_is_below ? std::move(inner) : std::move(outer));
-      rest = inner_is_below ? std::move(outer) : std::move(inner);
+      rest.swap(inner_is_below ? outer : inner);
+      use(inner_is_below ? inner : outer);
     }
-    pieces.push_back(std::move(rest));
-    return pieces;
+    use(rest);
   }
 
-  void insert_chord_points(Polygon& strip, int f) {
-    Polygon out;
+  void insert_chord_points(Polygon& strip, int f, FacePart& part) const {
+    if (std::all_of(strip.begin(), strip.end(), [](const Corner& c) { return c.halfedge >= 0; })) return;
+    Polygon& out = part.with_points;
+    out.clear();
     const int n = static_cast<int>(strip.size());
     for (int i = 0; i < n; ++i) {
       const Corner& a = strip[i];
@@ -258,19 +377,18 @@ class OverlayBuilder {
       const std::int64_t u = a.place[0] / 2;
       const bool up = a.place[1] < b.place[1];
       const std::int64_t low = floor_div(std::min(a.place[1], b.place[1]), 2) + 1;
-      const std::int64_t high = std::max(a.place[1], b.place[1]);
-      std::vector<std::int64_t> lines;
-      for (std::int64_t v = low; 2 * v < high; ++v) lines.push_back(v);
-      if (!up) std::reverse(lines.begin(), lines.end());
-      for (const std::int64_t v : lines)
-        out.push_back({chord_vertex(f, u, v), {2 * u, 2 * v}, Vector2(static_cast<double>(u), static_cast<double>(v)), -1});
+      const std::int64_t last = floor_div(std::max(a.place[1], b.place[1]) + 1, 2) - 1;
+      for (std::int64_t k = low; k <= last; ++k) {
+        const std::int64_t v = up ? k : low + last - k;
+        out.push_back({chord_vertex(f, u, v, part), {2 * u, 2 * v}, Vector2(static_cast<double>(u), static_cast<double>(v)), -1});
+      }
     }
-    strip = std::move(out);
+    strip.swap(out);
   }
 
-  int chord_vertex(int f, std::int64_t u, std::int64_t v) {
-    for (const auto& [cu, cv, vertex] : chord_points_)
-      if (cu == u && cv == v) return vertex;
+  int chord_vertex(int f, std::int64_t u, std::int64_t v, FacePart& part) const {
+    for (const ChordPoint& p : part.chord_points)
+      if (p.u == u && p.v == v) return p.vertex;
     const GridVector& a = param_.corner_uv[3 * f];
     const GridVector& ab = param_.halfedge_uv[3 * f];
     const GridVector& ca = param_.halfedge_uv[3 * f + 2];
@@ -281,61 +399,65 @@ class OverlayBuilder {
     const double s = (x * cy - y * cx) / det, t = (bx * y - by * x) / det;
     const auto& face = mesh_.face(f);
     const Vector3 p = mesh_.position(face[0]) * (1 - s - t) + mesh_.position(face[1]) * s + mesh_.position(face[2]) * t;
-    const int vertex = add_vertex(p, (u + v) & 1 ? -1 : 1);
-    chord_points_.emplace_back(u, v, vertex);
+    const int vertex = static_cast<int>(out_.vertices.size() + part.vertices.size());
+    part.vertices.push_back({p, -1, static_cast<std::int8_t>((u + v) & 1 ? -1 : 1)});
+    part.chord_points.push_back({u, v, vertex});
     return vertex;
   }
 
-  void emit(const Polygon& polygon, int f, bool regular) {
-    const int piece = out_.piece_count();
+  void emit(const Polygon& polygon, int f, bool regular, FacePart& part) const {
     const int n = static_cast<int>(polygon.size());
     for (int i = 0; i < n; ++i) {
       const Corner& a = polygon[i];
-      const Corner& b = polygon[(i + 1) % n];
+      const Corner& b = polygon[i + 1 < n ? i + 1 : 0];
       const int c = a.halfedge < 0 ? -1 : surface_.features.halfedge_curve[a.halfedge];
       bool isoline = c >= 0;
       if (regular)
         for (int axis = 0; axis < 2; ++axis) isoline |= a.place[axis] == b.place[axis] && a.place[axis] % 2 == 0;
-      out_.origin.push_back(a.vertex);
-      out_.piece_of.push_back(piece);
-      out_.on_isoline.push_back(isoline);
-      out_.curve.push_back(c);
-      out_.uv.push_back(a.uv);
-      out_.surface_halfedge.push_back(a.halfedge);
+      part.sides.push_back({a.vertex, a.halfedge, c, isoline, a.uv});
     }
-    out_.piece_begin.push_back(static_cast<int>(out_.origin.size()));
-    out_.piece_face.push_back(f);
-    out_.piece_regular.push_back(regular);
+    part.pieces.push_back({f, static_cast<int>(part.sides.size()), regular});
   }
 
   /// Two segments with the same ends are the same segment: straight pieces of a simplicial surface.
-  void pair_halfedges() {
-    struct Entry {
-      int low, high, halfedge;
+  void pair_halfedges(const RunContext& context) {
+    const int n = static_cast<int>(out_.origin.size()), vertices = static_cast<int>(out_.vertices.size());
+    std::vector<std::array<int, 2>> ends(n);  // the lower first
+    const auto find_ends = [&](int begin, int end) {
+      for (int k = begin; k < end; ++k) {
+        const int a = out_.origin[k], b = out_.target(k);
+        ends[k] = {std::min(a, b), std::max(a, b)};
+      }
     };
-    const int n = static_cast<int>(out_.origin.size());
-    std::vector<Entry> entries(n);
-    for (int k = 0; k < n; ++k) {
-      const int a = out_.origin[k], b = out_.target(k);
-      entries[k] = {std::min(a, b), std::max(a, b), k};
-    }
-    bucket_sort(entries, [](const Entry& x) { return x.low; }, [](const Entry& x, const Entry& y) {
-      return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge);
-    });
+    parallel_chunks(n, context, find_ends, 4096);
+    std::vector<int> list_end(vertices + 1, 0);  // of each lower end's segments, once they are listed
+    for (const auto& e : ends) ++list_end[e[0] + 1];
+    for (int v = 0; v < vertices; ++v) list_end[v + 1] += list_end[v];
+    std::vector<Segment> segments(n);
+    for (int k = 0; k < n; ++k) segments[list_end[ends[k][0]]++] = {ends[k][1], k};
     out_.opposite.assign(n, -1);
-    for (int i = 0; i < n;) {
-      int j = i + 1;
-      while (j < n && entries[j].low == entries[i].low && entries[j].high == entries[i].high) ++j;
-      if (j - i > 2) throw InternalError("regular quads", "pieces of the grid overlay do not fit together");
-      if (j - i == 2) {
-        const int x = entries[i].halfedge, y = entries[i + 1].halfedge;
+    const auto pair = [&](int begin, int end) {
+      for (int v = begin; v < end; ++v) pair_segments(segments.data() + (v > 0 ? list_end[v - 1] : 0), segments.data() + list_end[v]);
+    };
+    parallel_chunks(vertices, context, pair, 1024);
+  }
+
+  /// \param begin, end  those with one lower end
+  void pair_segments(Segment* begin, Segment* end) {
+    std::sort(begin, end, [](const Segment& x, const Segment& y) { return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge); });
+    while (begin < end) {
+      Segment* const next = std::find_if(begin, end, [begin](const Segment& s) { return s.high != begin->high; });
+      if (next - begin > 2) throw InternalError("regular quads", "pieces of the grid overlay do not fit together");
+      const int x = begin[0].halfedge;
+      if (next - begin == 2) {
+        const int y = begin[1].halfedge;
         if (out_.origin[x] == out_.origin[y]) throw InternalError("regular quads", "pieces of the grid overlay overlap");
         out_.opposite[x] = y;
         out_.opposite[y] = x;
-      } else if (out_.surface_halfedge[entries[i].halfedge] < 0 || mesh_.opposite(out_.surface_halfedge[entries[i].halfedge]) >= 0) {
+      } else if (out_.surface_halfedge[x] < 0 || mesh_.opposite(out_.surface_halfedge[x]) >= 0) {
         throw InternalError("regular quads", "the grid overlay has a gap");
       }
-      i = j;
+      begin = next;
     }
   }
 
@@ -353,9 +475,8 @@ class OverlayBuilder {
   const CurveCoordinates& curves_;
   GridOverlay out_;
   std::vector<char> cuttable_;
-  std::vector<std::vector<EdgePoint>> edge_points_;
-  std::vector<Crossing> crossings_;  ///< of one edge
-  std::vector<std::tuple<std::int64_t, std::int64_t, int>> chord_points_;
+  std::vector<int> points_begin_;  ///< #half-edges + 1: first of its points
+  std::vector<EdgePoint> edge_points_;
 };
 
 }  // namespace

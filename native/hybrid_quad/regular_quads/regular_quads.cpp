@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "hybrid_quad/base/parallel.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -130,12 +132,17 @@ RegularQuads extract_regular_quads(const WorkingSurface& surface, const FrameFie
   const GridOverlay& overlay = out.overlay;
   const CellComponents cells = join_pieces(overlay);
   out.piece_cell.assign(overlay.piece_count(), -1);
-  for (int id = 0; id + 1 < static_cast<int>(cells.begin.size()); ++id) {
-    std::array<int, 4> side;
-    if (!sides_of_cell(overlay, cells, id, side)) continue;
+  const int count = static_cast<int>(cells.begin.size()) - 1;
+  std::vector<std::array<int, 4>> side(count);
+  std::vector<char> is_cell(count, 0);
+  parallel_chunks(count, context, [&](int begin, int end) {
+    for (int id = begin; id < end; ++id) is_cell[id] = sides_of_cell(overlay, cells, id, side[id]);
+  });
+  for (int id = 0; id < count; ++id) {
+    if (!is_cell[id]) continue;
     for (int i = cells.begin[id]; i < cells.begin[id + 1]; ++i)
       out.piece_cell[cells.members[i]] = static_cast<int>(out.side.size());
-    out.side.push_back(side);
+    out.side.push_back(side[id]);
   }
   release(out, find_touching_cells(overlay, out.piece_cell, out.side.size()));
   return out;

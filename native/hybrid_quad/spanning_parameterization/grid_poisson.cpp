@@ -38,7 +38,7 @@ class SlipProblem {
     SparseFactor factor(lower_, places(), context);
     if (!factor.factorize(lower_, 0, context)) return;
     context.checkpoint(0.7);
-    const Eigen::VectorXd change = factor.solve(right_side_);
+    const Eigen::VectorXd change = factor.solve(right_side_, context.threads);
     if (!change.allFinite()) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v)
       for (int c = 0; c < 2; ++c)
