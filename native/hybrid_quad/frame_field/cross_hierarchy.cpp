@@ -1,9 +1,9 @@
 #include "hybrid_quad/frame_field/cross_hierarchy.h"
 
-#include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
+
+#include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
 
@@ -63,9 +63,8 @@ int aggregate_pairs(CrossLevel& level) {
 }
 
 void merge_parallel_links(std::vector<CrossLink>& links) {
-  std::stable_sort(links.begin(), links.end(), [](const CrossLink& x, const CrossLink& y) {
-    return std::tie(x.from, x.to) < std::tie(y.from, y.to);
-  });
+  sort_into_buckets(links, [](const CrossLink& link) { return link.to; });
+  sort_into_buckets(links, [](const CrossLink& link) { return link.from; });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < links.size();) {
     CrossLink merged = links[i++];

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -27,8 +29,9 @@ FaceBasis face_basis(const TriangleMesh& mesh, int f) {
   return basis;
 }
 
-FaceAngles::FaceAngles(const TriangleMesh& mesh) : corner_(mesh.halfedge_count()), direction_(mesh.halfedge_count()) {
-  for (int f = 0; f < mesh.face_count(); ++f) {
+FaceAngles::FaceAngles(const TriangleMesh& mesh, const RunContext& context)
+    : corner_(mesh.halfedge_count()), direction_(mesh.halfedge_count()) {
+  const auto measure = [&](int f) {
     const Vector3 e0 = mesh.edge_vector(3 * f), e1 = mesh.edge_vector(3 * f + 1), e2 = mesh.edge_vector(3 * f + 2);
     double* corner = &corner_[3 * f];
     corner[0] = angle_between(e0, -e2);
@@ -37,7 +40,10 @@ FaceAngles::FaceAngles(const TriangleMesh& mesh) : corner_(mesh.halfedge_count()
     direction_[3 * f] = 0;
     direction_[3 * f + 1] = kPi - corner[1];
     direction_[3 * f + 2] = direction_[3 * f + 1] + kPi - corner[2];
-  }
+  };
+  parallel_chunks(mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) measure(f);
+  });
 }
 
 double FaceAngles::transport(int h, int opposite) const { return direction_[opposite] + kPi - direction_[h]; }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -19,7 +20,7 @@ FaceBasis face_basis(const TriangleMesh& mesh, int f);
 /// shape, so index sums come out right on slivers and on faces without area too.
 class FaceAngles {
  public:
-  explicit FaceAngles(const TriangleMesh& mesh);
+  explicit FaceAngles(const TriangleMesh& mesh, const RunContext& context = {});
 
   /// Interior angle at the origin of half-edge h.
   double corner(int h) const { return corner_[h]; }

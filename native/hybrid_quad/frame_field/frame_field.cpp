@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/frame_field/frame_topology.h"
 #include "hybrid_quad/grid_algebra/quarter_turn.h"
 
@@ -90,16 +91,17 @@ bool is_combed(const FrameField& field, const TriangleMesh& mesh) {
 }  // namespace
 
 FrameField frame_field_from_rows(const WorkingSurface& surface, const FaceAngles& angles, std::vector<Vector3> du,
-                                 std::vector<Vector3> dv) {
+                                 std::vector<Vector3> dv, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
-  const std::vector<double> directions = frame_directions(mesh, du, dv);
+  const std::vector<double> directions = frame_directions(mesh, du, dv, context);
   FrameField field;
   field.du = std::move(du);
   field.dv = std::move(dv);
   field.matching.assign(mesh.halfedge_count(), 0);
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (!mesh.is_boundary(h))
-      field.matching[h] = static_cast<std::uint8_t>(turn_across(mesh, angles, directions, h).quarters);
+  parallel_chunks(mesh.halfedge_count(), context, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h)
+      if (!mesh.is_boundary(h)) field.matching[h] = static_cast<std::uint8_t>(turn_across(mesh, angles, directions, h).quarters);
+  });
   const std::vector<int> turns = combing_turns(mesh, field.matching);
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const int o = mesh.opposite(h);
@@ -107,21 +109,23 @@ FrameField frame_field_from_rows(const WorkingSurface& surface, const FaceAngles
       field.matching[h] = static_cast<std::uint8_t>(wrap_turns(turns[o / 3] + field.matching[h] - turns[h / 3] + 4));
   }
   for (int f = 0; f < mesh.face_count(); ++f) turn_rows(field.du[f], field.dv[f], turns[f]);
-  const std::vector<int> quarters = vertex_quarters(mesh, angles, directions);
+  const std::vector<int> quarters = vertex_quarters(mesh, angles, directions, nullptr, context);
   field.cone_index.assign(mesh.vertex_count(), 0);
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (!surface.features.on_feature[v] && !mesh.is_boundary_vertex(v))
       field.cone_index[v] = static_cast<std::int8_t>(quarters[v]);
-  field.feature_cones = count_feature_cones(surface, field.du, field.dv);
+  field.feature_cones = count_feature_cones(surface, field.du, field.dv, context);
   return field;
 }
 
-int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv) {
+int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv,
+                        const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
-  const FaceAngles angles(mesh);
-  const std::vector<double> directions = frame_directions(mesh, du, dv);
   std::vector<char> is_marked(mesh.halfedge_count());
   for (int h = 0; h < mesh.halfedge_count(); ++h) is_marked[h] = surface.features.is_feature(h);
+  if (std::find(is_marked.begin(), is_marked.end(), 1) == is_marked.end()) return 0;
+  const FaceAngles angles(mesh, context);
+  const std::vector<double> directions = frame_directions(mesh, du, dv, context);
   std::vector<int> quads(mesh.vertex_count(), 0);
   int count = 0;
   for (int h = 0; h < mesh.halfedge_count(); ++h) {

@@ -68,12 +68,13 @@ FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOpti
 /// Matchings, combing and cone indices of given frames (rows du, dv per face).
 /// \param angles  of the surface, with the turns that matchings are nearest to
 FrameField frame_field_from_rows(const WorkingSurface& surface, const FaceAngles& angles, std::vector<Vector3> du,
-                                 std::vector<Vector3> dv);
+                                 std::vector<Vector3> dv, const RunContext& context = {});
 
 /// Irregular vertices inside the surface that the field has because of features: vertices on them where, sector by sector
 /// and at least one in each, other than four quads meet; and one beside every acute tip, a sector in which frames leave no
 /// room for the quad that has to be there, because three quads meet where that quad ends.
-int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
+int count_feature_cones(const WorkingSurface& surface, const std::vector<Vector3>& du, const std::vector<Vector3>& dv,
+                        const RunContext& context = {});
 
 std::vector<std::string> violations_of(const FrameField& field, const WorkingSurface& surface);
 

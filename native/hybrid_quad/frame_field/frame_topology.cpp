@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/grid_algebra/quarter_turn.h"
 
 namespace hybrid_quad {
@@ -21,16 +22,19 @@ double deviation_from_axis(const FaceAngles& angles, const std::vector<double>& 
 
 }  // namespace
 
-std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv) {
+std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv,
+                                     const RunContext& context) {
   std::vector<double> directions(mesh.face_count(), 0);
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const FaceBasis basis = face_basis(mesh, f);
-    // The rotation nearest to a matrix of positive determinant: its conformal part, which cannot vanish.
-    const double cosine = du[f].dot(basis.along) + dv[f].dot(basis.across);
-    const double sine = du[f].dot(basis.across) - dv[f].dot(basis.along);
-    const double angle = std::atan2(sine, cosine);
-    if (std::isfinite(angle)) directions[f] = angle;
-  }
+  parallel_chunks(mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      const FaceBasis basis = face_basis(mesh, f);
+      // The rotation nearest to a matrix of positive determinant: its conformal part, which cannot vanish.
+      const double cosine = du[f].dot(basis.along) + dv[f].dot(basis.across);
+      const double sine = du[f].dot(basis.across) - dv[f].dot(basis.along);
+      const double angle = std::atan2(sine, cosine);
+      if (std::isfinite(angle)) directions[f] = angle;
+    }
+  });
   return directions;
 }
 
@@ -84,9 +88,11 @@ int sector_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const st
 }
 
 std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
-                                 const std::vector<std::uint8_t>* matching) {
+                                 const std::vector<std::uint8_t>* matching, const RunContext& context) {
   std::vector<int> quarters(mesh.vertex_count());
-  for (int v = 0; v < mesh.vertex_count(); ++v) quarters[v] = quarters_at(mesh, angles, directions, v, matching);
+  parallel_chunks(mesh.vertex_count(), context, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) quarters[v] = quarters_at(mesh, angles, directions, v, matching);
+  });
   return quarters;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/frame_field/face_angles.h"
 
 namespace hybrid_quad {
@@ -15,7 +16,8 @@ struct FrameTurn {
 
 /// Direction of every frame's u axis, counterclockwise from its face's half-edge 0: the rotation nearest to the frame.
 /// Frames that say nothing (zero, not finite, orientation reversed) are taken along half-edge 0.
-std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv);
+std::vector<double> frame_directions(const TriangleMesh& mesh, const std::vector<Vector3>& du, const std::vector<Vector3>& dv,
+                                     const RunContext& context = {});
 
 /// The turn nearest to the expected one. \pre h is interior
 FrameTurn turn_across(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions, int h);
@@ -31,7 +33,7 @@ int quarters_at(const TriangleMesh& mesh, const FaceAngles& angles, const std::v
 
 /// Of every vertex; they sum to 4 times the Euler characteristic.
 std::vector<int> vertex_quarters(const TriangleMesh& mesh, const FaceAngles& angles, const std::vector<double>& directions,
-                                 const std::vector<std::uint8_t>* matching = nullptr);
+                                 const std::vector<std::uint8_t>* matching = nullptr, const RunContext& context = {});
 
 /// Quads that the field puts at a vertex between half-edge `first`, which leaves it, and the next marked one
 /// counterclockwise: all around where no other is marked, to the boundary where that comes first. 0 at an acute tip.

@@ -15,13 +15,12 @@ struct Curvature {
   std::vector<double> defect;   ///< #V: the angle that is missing to a full turn
   std::vector<double> area;     ///< #V: in squared quad edges; 0 where nothing flows
   std::vector<int> neighbours;  ///< #V
+};
 
-  bool flows(int a, int b) const { return area[a] > 0 && area[b] > 0; }
-  /// From a to b in one step: a vertex gives away half of what it has at most, so that no step overshoots.
-  double flow(int a, int b) const {
-    const double conductance = 0.5 * std::min(area[a] / neighbours[a], area[b] / neighbours[b]);
-    return conductance * (defect[a] / area[a] - defect[b] / area[b]);
-  }
+/// An edge through which curvature flows.
+struct Channel {
+  int halfedge, from, to;
+  double conductance;  ///< a vertex gives away half of what it has at most in a step, so that none overshoots
 };
 
 constexpr double kStep = 0.5;  // standard deviation of a step between even triangles, in their edges: half stays, half goes one edge
@@ -44,24 +43,40 @@ Curvature curvature_of(const WorkingSurface& surface, const FaceAngles& angles) 
   return c;
 }
 
+std::vector<Channel> channels_of(const TriangleMesh& mesh, const Curvature& c) {
+  std::vector<Channel> channels;
+  channels.reserve(mesh.halfedge_count() / 2);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.opposite(h) < h) continue;
+    const int a = mesh.from(h), b = mesh.to(h);
+    if (!(c.area[a] > 0 && c.area[b] > 0)) continue;
+    channels.push_back({h, a, b, 0.5 * std::min(c.area[a] / c.neighbours[a], c.area[b] / c.neighbours[b])});
+  }
+  return channels;
+}
+
 }  // namespace
 
 std::vector<double> turns_for_average_curvature(const WorkingSurface& surface, const FaceAngles& angles, double spread) {
   const TriangleMesh& mesh = surface.mesh;
   Curvature curvature = curvature_of(surface, angles);
-  std::vector<double> turns(mesh.halfedge_count(), 0), flow(mesh.halfedge_count(), 0);
+  const std::vector<Channel> channels = channels_of(mesh, curvature);
+  std::vector<double> flowed(channels.size(), 0), density(mesh.vertex_count(), 0), turns(mesh.halfedge_count(), 0);
   for (int step = averaging_steps(surface, spread, kStep); step > 0; --step) {
-    for (int h = 0; h < mesh.halfedge_count(); ++h) {
-      const int a = mesh.from(h), b = mesh.to(h);
-      flow[h] = mesh.opposite(h) > h && curvature.flows(a, b) ? curvature.flow(a, b) : 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      if (curvature.area[v] > 0) density[v] = curvature.defect[v] / curvature.area[v];
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      const Channel& c = channels[i];
+      const double flow = c.conductance * (density[c.from] - density[c.to]);
+      if (flow == 0) continue;
+      curvature.defect[c.from] -= flow;
+      curvature.defect[c.to] += flow;
+      flowed[i] += flow;
     }
-    for (int h = 0; h < mesh.halfedge_count(); ++h) {
-      if (flow[h] == 0) continue;
-      curvature.defect[mesh.from(h)] -= flow[h];
-      curvature.defect[mesh.to(h)] += flow[h];
-      turns[h] += flow[h];
-      turns[mesh.opposite(h)] -= flow[h];
-    }
+  }
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    turns[channels[i].halfedge] += flowed[i];
+    turns[mesh.opposite(channels[i].halfedge)] -= flowed[i];
   }
   return turns;
 }

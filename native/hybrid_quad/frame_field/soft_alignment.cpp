@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/frame_field/face_angles.h"
 #include "hybrid_quad/frame_field/surface_curvature.h"
 
@@ -28,24 +29,26 @@ void add_guides(const WorkingSurface& surface, const std::vector<Vector3>& guide
 
 /// Along the principal directions, the more the surface bends one way only; not where a guide says otherwise.
 void add_curvature(const WorkingSurface& surface, double alignment, const std::vector<Vector3>& guides,
-                   std::vector<Complex>& pulls) {
+                   const RunContext& context, std::vector<Complex>& pulls) {
   constexpr double kMostPull = 4.8;
   constexpr double kClear = 0.5;  // a tube of radius 2 h: its direction could not be clearer
-  const std::vector<PrincipalCurvature> curvature = principal_curvatures(surface);
-  for (int f = 0; f < surface.mesh.face_count(); ++f) {
-    const double clear = std::min(1.0, curvature[f].anisotropy(surface.target_length[f]) / kClear);
-    const double free = guides.empty() ? 1 : std::max(0.0, 1 - guides[f].norm());
-    pulls[f] += pull_along(face_basis(surface.mesh, f), curvature[f].direction, kMostPull * alignment * free * clear * clear);
-  }
+  const std::vector<PrincipalCurvature> curvature = principal_curvatures(surface, context);
+  parallel_chunks(surface.mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      const double clear = std::min(1.0, curvature[f].anisotropy(surface.target_length[f]) / kClear);
+      const double free = guides.empty() ? 1 : std::max(0.0, 1 - guides[f].norm());
+      pulls[f] += pull_along(face_basis(surface.mesh, f), curvature[f].direction, kMostPull * alignment * free * clear * clear);
+    }
+  });
 }
 
 }  // namespace
 
-std::vector<Complex> soft_pulls(const WorkingSurface& surface, const FrameFieldOptions& options) {
+std::vector<Complex> soft_pulls(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
   std::vector<Complex> pulls;
   if (options.guides.empty() && !(options.curvature_alignment > 0)) return pulls;
   pulls.assign(surface.mesh.face_count(), Complex(0, 0));
-  if (options.curvature_alignment > 0) add_curvature(surface, options.curvature_alignment, options.guides, pulls);
+  if (options.curvature_alignment > 0) add_curvature(surface, options.curvature_alignment, options.guides, context, pulls);
   if (!options.guides.empty()) add_guides(surface, options.guides, pulls);
   return pulls;
 }

@@ -67,7 +67,8 @@ void pull_softly(const std::vector<Complex>& pulls, CrossUnknowns& cross) {
   }
 }
 
-CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles, const FrameFieldOptions& options) {
+CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAngles& angles, const FrameFieldOptions& options,
+                                    const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
   std::vector<double> for_lengths;
   if (options.turn_for_lengths > 0) for_lengths = turns_for_lengths(surface);
@@ -75,15 +76,25 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
   fix_faces_at_features(surface, angles, cross);
   std::vector<double> area(mesh.face_count());
   for (int f = 0; f < mesh.face_count(); ++f) area[f] = mesh.area(f);
+  std::vector<double> stiffness(mesh.halfedge_count());
+  std::vector<Complex> carried(mesh.halfedge_count());  // z beyond the half-edge from z here
+  parallel_chunks(mesh.halfedge_count(), context, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h) {
+      const int o = mesh.opposite(h);
+      if (o < h) continue;
+      const double turn = angles.expected_turn(h) + (for_lengths.empty() ? 0.0 : options.turn_for_lengths * for_lengths[h]);
+      stiffness[h] = link_stiffness(surface, h, area[h / 3] + area[o / 3]);
+      carried[h] = std::polar(stiffness[h], 4 * (angles.transport(h, o) + turn));
+    }
+  });
   CrossSystem& system = cross.system;
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const int o = mesh.opposite(h);
     if (o < h) continue;
     const int f = h / 3, g = o / 3, p = cross.unknown[f], q = cross.unknown[g];
     if (p < 0 && q < 0) continue;
-    const double w = link_stiffness(surface, h, area[f] + area[g]);
-    const double turn = angles.expected_turn(h) + (for_lengths.empty() ? 0.0 : options.turn_for_lengths * for_lengths[h]);
-    const Complex carry = std::polar(w, 4 * (angles.transport(h, o) + turn));  // z_g from z_f
+    const double w = stiffness[h];
+    const Complex carry = carried[h];
     if (p >= 0) system.diagonal[p] += w;
     if (q >= 0) system.diagonal[q] += w;
     if (p >= 0 && q >= 0) {
@@ -101,7 +112,7 @@ CrossUnknowns assemble_cross_system(const WorkingSurface& surface, const FaceAng
       const double share = area[f] / (h * h);
       cross.diffusion_mass[cross.unknown[f]] = std::isfinite(share) ? std::max(share, 1e-6) : 1e-6;
     }
-  pull_softly(soft_pulls(surface, options), cross);
+  pull_softly(soft_pulls(surface, options, context), cross);
   return cross;
 }
 
@@ -185,22 +196,24 @@ std::vector<double> expected_turns(const WorkingSurface& surface, const FaceAngl
 
 FrameField solve_frame_field(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
-  FaceAngles angles(mesh);
+  FaceAngles angles(mesh, context);
   angles.expect_turns(expected_turns(surface, angles, options));
-  const CrossUnknowns cross = assemble_cross_system(surface, angles, options);
+  const CrossUnknowns cross = assemble_cross_system(surface, angles, options, context);
   context.checkpoint(0.1);
   std::array<Solution, 2> both = both_solutions(surface, angles, cross, options, context);
   const int kept = better_of(both, options);
   const std::vector<double>& directions = both[kept].directions;
 
   std::vector<Vector3> du(mesh.face_count()), dv(mesh.face_count());
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const FaceBasis basis = face_basis(mesh, f);
-    const double c = std::cos(directions[f]), s = std::sin(directions[f]);
-    du[f] = c * basis.along + s * basis.across;
-    dv[f] = c * basis.across - s * basis.along;
-  }
-  FrameField field = frame_field_from_rows(surface, angles, std::move(du), std::move(dv));
+  parallel_chunks(mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      const FaceBasis basis = face_basis(mesh, f);
+      const double c = std::cos(directions[f]), s = std::sin(directions[f]);
+      du[f] = c * basis.along + s * basis.across;
+      dv[f] = c * basis.across - s * basis.along;
+    }
+  });
+  FrameField field = frame_field_from_rows(surface, angles, std::move(du), std::move(dv), context);
   field.choice = {both[0].record, both[1].record, kept};
   return field;
 }

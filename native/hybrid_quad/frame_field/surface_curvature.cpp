@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/frame_field/averaging_steps.h"
 #include "hybrid_quad/frame_field/face_angles.h"
 
@@ -22,23 +23,34 @@ double fold_angle(const Vector3& here, const Vector3& there, const Vector3& alon
   return std::atan2(here.cross(there).dot(along), here.dot(there));
 }
 
-std::vector<Bending> bending_of_faces(const WorkingSurface& surface) {
+/// Half of what the edge of half-edge h bends, on either side.
+Eigen::Matrix3d half_of_edge(const TriangleMesh& mesh, const std::vector<Vector3>& normal, int h) {
+  const Vector3 e = mesh.edge_vector(h);
+  const double length = e.norm();
+  if (!(length > 0)) return Eigen::Matrix3d::Zero();
+  return (0.5 * fold_angle(normal[h / 3], normal[mesh.opposite(h) / 3], e / length) / length) * e * e.transpose();
+}
+
+std::vector<Bending> bending_of_faces(const WorkingSurface& surface, const RunContext& context) {
   const TriangleMesh& mesh = surface.mesh;
   std::vector<Bending> bending(mesh.face_count());
   std::vector<Vector3> normal(mesh.face_count());
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    bending[f].area = mesh.area(f);
-    normal[f] = mesh.normal(f);
-  }
+  parallel_chunks(mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      bending[f].area = mesh.area(f);
+      normal[f] = mesh.normal(f);
+    }
+  });
+  const auto bends = [&](int h) { return mesh.opposite(h) > h && !surface.features.is_feature(h); };
+  std::vector<Eigen::Matrix3d> half(mesh.halfedge_count());
+  parallel_chunks(mesh.halfedge_count(), context, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h)
+      if (bends(h)) half[h] = half_of_edge(mesh, normal, h);
+  });
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    const int o = mesh.opposite(h);
-    if (o < h || surface.features.is_feature(h)) continue;
-    const Vector3 e = mesh.edge_vector(h);
-    const double length = e.norm();
-    if (!(length > 0)) continue;
-    const Eigen::Matrix3d half = (0.5 * fold_angle(normal[h / 3], normal[o / 3], e / length) / length) * e * e.transpose();
-    bending[h / 3].tensor += half;
-    bending[o / 3].tensor += half;
+    if (!bends(h)) continue;
+    bending[h / 3].tensor += half[h];
+    bending[mesh.opposite(h) / 3].tensor += half[h];
   }
   return bending;
 }
@@ -47,18 +59,20 @@ constexpr double kSpread = 0.73;  // quad edges
 constexpr double kStep = 0.35;    // edges, on even triangles
 
 /// One step of averaging with the neighbours.
-void spread(const WorkingSurface& surface, std::vector<Bending>& bending) {
-  const std::vector<Bending> before = bending;
-  for (int h = 0; h < surface.mesh.halfedge_count(); ++h) {
-    const int o = surface.mesh.opposite(h);
-    if (o < 0 || surface.features.is_feature(h)) continue;
-    bending[h / 3].tensor += before[o / 3].tensor;
-    bending[h / 3].area += before[o / 3].area;
-  }
-  for (std::size_t f = 0; f < bending.size(); ++f) {
-    bending[f].tensor /= 4;
-    bending[f].area /= 4;
-  }
+void spread(const WorkingSurface& surface, const std::vector<Bending>& before, std::vector<Bending>& after, const RunContext& context) {
+  parallel_chunks(surface.mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      Bending sum = before[f];
+      for (int h = 3 * f; h < 3 * f + 3; ++h) {
+        const int o = surface.mesh.opposite(h);
+        if (o < 0 || surface.features.is_feature(h)) continue;
+        sum.tensor += before[o / 3].tensor;
+        sum.area += before[o / 3].area;
+      }
+      after[f].tensor = sum.tensor / 4;
+      after[f].area = sum.area / 4;
+    }
+  });
 }
 
 PrincipalCurvature principal(const Bending& bending, const FaceBasis& axes) {
@@ -79,11 +93,16 @@ PrincipalCurvature principal(const Bending& bending, const FaceBasis& axes) {
 
 }  // namespace
 
-std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface) {
-  std::vector<Bending> bending = bending_of_faces(surface);
-  for (int step = averaging_steps(surface, kSpread, kStep); step > 0; --step) spread(surface, bending);
+std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface, const RunContext& context) {
+  std::vector<Bending> bending = bending_of_faces(surface, context), next(bending.size());
+  for (int step = averaging_steps(surface, kSpread, kStep); step > 0; --step) {
+    spread(surface, bending, next, context);
+    bending.swap(next);
+  }
   std::vector<PrincipalCurvature> result(bending.size());
-  for (int f = 0; f < surface.mesh.face_count(); ++f) result[f] = principal(bending[f], face_basis(surface.mesh, f));
+  parallel_chunks(surface.mesh.face_count(), context, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) result[f] = principal(bending[f], face_basis(surface.mesh, f));
+  });
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/working_surface/working_surface.h"
 
 namespace hybrid_quad {
@@ -19,6 +20,6 @@ struct PrincipalCurvature {
 /// Edge tensors (Cohen-Steiner and Morvan 2003) of the working surface, whose edges are a fixed part of a quad's,
 /// averaged over neighbouring faces but not across features, which bend sharply and say nothing of the faces beside.
 /// \return #F
-std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface);
+std::vector<PrincipalCurvature> principal_curvatures(const WorkingSurface& surface, const RunContext& context = {});
 
 }  // namespace hybrid_quad
