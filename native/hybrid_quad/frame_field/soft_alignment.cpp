@@ -28,8 +28,8 @@ void add_guides(const WorkingSurface& surface, const std::vector<Vector3>& guide
 }
 
 /// Along the principal directions, the more the surface bends one way only; not where a guide says otherwise.
-void add_curvature(const WorkingSurface& surface, double alignment, const std::vector<Vector3>& guides,
-                   const RunContext& context, std::vector<Complex>& pulls) {
+void add_curvature(const WorkingSurface& surface, double alignment, const std::vector<Vector3>& guides, const RunContext& context,
+                   std::vector<Complex>& pulls) {
   constexpr double kMostPull = 4.8;
   constexpr double kClear = 0.5;  // a tube of radius 2 h: its direction could not be clearer
   const std::vector<PrincipalCurvature> curvature = principal_curvatures(surface, context);

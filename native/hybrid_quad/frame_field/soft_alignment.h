@@ -12,7 +12,8 @@ namespace hybrid_quad {
 /// energy gets  sum over faces  2 area / h^2 |pull| |z - pull / |pull||^2, so a pull of 1 decides within a quad edge h.
 /// From options.guides, and from the surface's own curvature where it bends one way more than the other.
 /// \return #F, or empty where nothing pulls
-std::vector<std::complex<double>> soft_pulls(const WorkingSurface& surface, const FrameFieldOptions& options, const RunContext& context);
+std::vector<std::complex<double>> soft_pulls(const WorkingSurface& surface, const FrameFieldOptions& options,
+                                             const RunContext& context);
 
 /// How much a cross should turn from half-edge h's face to the opposite one, beyond parallel transport, for quads of the
 /// surface's target lengths to fit together: grad(angle) = J grad(log length), integrated across the edge. It is what

@@ -59,7 +59,8 @@ constexpr double kSpread = 0.73;  // quad edges
 constexpr double kStep = 0.35;    // edges, on even triangles
 
 /// One step of averaging with the neighbours.
-void spread(const WorkingSurface& surface, const std::vector<Bending>& before, std::vector<Bending>& after, const RunContext& context) {
+void spread(const WorkingSurface& surface, const std::vector<Bending>& before, std::vector<Bending>& after,
+            const RunContext& context) {
   parallel_chunks(surface.mesh.face_count(), context, [&](int begin, int end) {
     for (int f = begin; f < end; ++f) {
       Bending sum = before[f];

@@ -36,7 +36,8 @@ class FlawMeasure {
     if (known[0].corners == p) return known[0].flaws;
     const double least_area = kLeastArea * piece_.h * piece_.h;
     known[0] = {p, hybrid_quad::is_flawed(p, least_area, whole_, agreement_, &lookup_[q])};
-    if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_, &lookup_[q]))) known[0].flaws = kBeyondDoubt;
+    if (known[0].flaws > 0 && (!least_ || hybrid_quad::is_flawed(p, least_area, whole_, *least_, &lookup_[q])))
+      known[0].flaws = kBeyondDoubt;
     return known[0].flaws;
   }
 

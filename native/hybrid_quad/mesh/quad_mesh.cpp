@@ -91,8 +91,7 @@ void check_fans(const QuadMesh& mesh, const std::vector<char>& on_border, std::v
       found.push_back(name() + " belongs to no quad");
       continue;
     }
-    if (!on_border[v] && valence < 3)
-      found.push_back("interior " + name() + " has " + std::to_string(valence) + " faces");
+    if (!on_border[v] && valence < 3) found.push_back("interior " + name() + " has " + std::to_string(valence) + " faces");
     const auto corner_from = [&](int before) {
       const auto at = std::lower_bound(corners.begin() + begin, corners.begin() + end, before,
                                        [](const Corner& c, int w) { return c.before < w; });

@@ -24,9 +24,9 @@ std::vector<int> pair_halfedges(const std::vector<std::array<int, 3>>& faces) {
       const int a = faces[f][i], b = faces[f][(i + 1) % 3];
       entries.push_back({std::min(a, b), std::max(a, b), 3 * f + i});
     }
-  bucket_sort(entries, [](const Entry& x) { return x.low; }, [](const Entry& x, const Entry& y) {
-    return std::tie(x.low, x.high, x.halfedge) < std::tie(y.low, y.high, y.halfedge);
-  });
+  bucket_sort(
+      entries, [](const Entry& x) { return x.low; },
+      [](const Entry& x, const Entry& y) { return std::tie(x.low, x.high, x.halfedge) < std::tie(y.low, y.high, y.halfedge); });
   std::vector<int> opposite(3 * faces.size(), -1);
   for (std::size_t i = 0; i < entries.size();) {
     std::size_t j = i + 1;

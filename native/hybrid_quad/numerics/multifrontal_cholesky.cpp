@@ -167,8 +167,10 @@ VectorXd MultifrontalCholesky::solve(const VectorXd& right_side, int threads) co
 void MultifrontalCholesky::solve_forwards(int task, std::vector<std::vector<Taken>>& taken, VectorXd& x) const {
   const int end = fronts_[task_end_[task] - 1].end;
   const auto take = [&](int place, double value) {
-    if (place < end) x[place] -= value;
-    else taken[task].push_back({place, value});
+    if (place < end)
+      x[place] -= value;
+    else
+      taken[task].push_back({place, value});
   };
   for (const int child : task_children_[task])
     for (const Taken& t : taken[child]) take(t.place, t.value);

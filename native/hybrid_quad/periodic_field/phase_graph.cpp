@@ -112,10 +112,18 @@ PhasePair mean_of_neighbours(const PhaseGraph& graph, int i, const std::vector<P
     const PhasePair& from = z[graph.neighbour[e]];
     const Complex x = times(t.a, from.a), y = times(t.b, from.b);
     switch (t.turn & 3) {  // adds what turned() makes of x and y
-      case 0: a_re += x.real(), a_im += x.imag(), b_re += y.real(), b_im += y.imag(); break;
-      case 1: a_re += y.real(), a_im -= y.imag(), b_re += x.real(), b_im += x.imag(); break;
-      case 2: a_re += x.real(), a_im -= x.imag(), b_re += y.real(), b_im -= y.imag(); break;
-      default: a_re += y.real(), a_im += y.imag(), b_re += x.real(), b_im -= x.imag(); break;
+      case 0:
+        a_re += x.real(), a_im += x.imag(), b_re += y.real(), b_im += y.imag();
+        break;
+      case 1:
+        a_re += y.real(), a_im -= y.imag(), b_re += x.real(), b_im += x.imag();
+        break;
+      case 2:
+        a_re += x.real(), a_im -= x.imag(), b_re += y.real(), b_im -= y.imag();
+        break;
+      default:
+        a_re += y.real(), a_im += y.imag(), b_re += x.real(), b_im -= x.imag();
+        break;
     }
   }
   return {{a_re, a_im}, {b_re, b_im}};

@@ -64,8 +64,8 @@ bool has_any(const SurfaceIndex& surface, const Vector3& p, SurfaceIndex::Filter
 }
 
 /// Whether a face that is as near to p as the nearest one points against a normal.
-bool points_against(const SurfaceIndex& surface, const Vector3& p, const SurfacePoint& nearest, const Vector3& normal, double touches,
-                    Lookup& lookup) {
+bool points_against(const SurfaceIndex& surface, const Vector3& p, const SurfacePoint& nearest, const Vector3& normal,
+                    double touches, Lookup& lookup) {
   constexpr double kAgainst = 0.15;
   SurfaceIndex::Filter against;
   against.normal = -normal;
@@ -180,7 +180,8 @@ std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surfac
   return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, agreement); });
 }
 
-bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement, Lookup* lookup) {
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement,
+               Lookup* lookup) {
   return !(area_vector(corners).norm() > least_area) || is_inverted(corners, surface, agreement, lookup);
 }
 

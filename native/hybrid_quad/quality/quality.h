@@ -55,15 +55,16 @@ struct Lookup {
 /// quarter of the quad's mean edge length beyond that, so that the far side of a thin sheet does not count. Of what is as near
 /// as the nearest point, at an edge or where sheets coincide, any face counts.
 /// \param lookup  null, or of the quad's last places: the answer is the same, and is found sooner
-bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement = {}, Lookup* lookup = nullptr);
+bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surface, const Agreement& agreement = {},
+                 Lookup* lookup = nullptr);
 
 /// All quads that are. Ascending.
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);
 
 /// Whether a quad is inverted or has no more than so much area (scene units squared).
 /// \param lookup  as for is_inverted
-bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement = {},
-               Lookup* lookup = nullptr);
+bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface,
+               const Agreement& agreement = {}, Lookup* lookup = nullptr);
 
 /// Quads that are, where the least area is 1e-10 of the squared mean edge length. Ascending.
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement = {}, int threads = 1);

@@ -259,7 +259,8 @@ class OverlayBuilder {
       add(0, 1, mesh_.from(h));
       const auto begin = edge_points_.begin();
       if (o < h)
-        std::for_each(begin + points_begin_[h], begin + points_begin_[h + 1], [&](const EdgePoint& p) { add(p.num, p.den, p.vertex); });
+        std::for_each(begin + points_begin_[h], begin + points_begin_[h + 1],
+                      [&](const EdgePoint& p) { add(p.num, p.den, p.vertex); });
       else
         for (int k = points_begin_[o + 1]; k-- > points_begin_[o];) {
           const EdgePoint& p = edge_points_[k];
@@ -437,14 +438,16 @@ class OverlayBuilder {
     for (int k = 0; k < n; ++k) segments[list_end[ends[k][0]]++] = {ends[k][1], k};
     out_.opposite.assign(n, -1);
     const auto pair = [&](int begin, int end) {
-      for (int v = begin; v < end; ++v) pair_segments(segments.data() + (v > 0 ? list_end[v - 1] : 0), segments.data() + list_end[v]);
+      for (int v = begin; v < end; ++v)
+        pair_segments(segments.data() + (v > 0 ? list_end[v - 1] : 0), segments.data() + list_end[v]);
     };
     parallel_chunks(vertices, context, pair, 1024);
   }
 
   /// \param begin, end  those with one lower end
   void pair_segments(Segment* begin, Segment* end) {
-    std::sort(begin, end, [](const Segment& x, const Segment& y) { return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge); });
+    std::sort(begin, end,
+              [](const Segment& x, const Segment& y) { return std::tie(x.high, x.halfedge) < std::tie(y.high, y.halfedge); });
     while (begin < end) {
       Segment* const next = std::find_if(begin, end, [begin](const Segment& s) { return s.high != begin->high; });
       if (next - begin > 2) throw InternalError("regular quads", "pieces of the grid overlay do not fit together");

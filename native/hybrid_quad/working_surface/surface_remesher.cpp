@@ -21,14 +21,9 @@ constexpr int kFinalRounds = 3;
 SurfaceRemesher::SurfaceRemesher(const SurfaceIndex& index, const FeatureGraph& features,
                                  const std::vector<double>& target_length, const WorkingSurfaceOptions& options,
                                  const RunContext& context)
-    : context_(context),
-      options_(options),
-      input_region_(features.face_region),
-      index_(index),
-      mesh_(index.mesh(), features.halfedge_curve, features.face_region),
-      vertex_(index.mesh().vertex_count()),
-      changed_at_(index.mesh().face_count(), 1),
-      relaxed_at_(index.mesh().vertex_count(), 0) {
+    : context_(context), options_(options), input_region_(features.face_region), index_(index),
+      mesh_(index.mesh(), features.halfedge_curve, features.face_region), vertex_(index.mesh().vertex_count()),
+      changed_at_(index.mesh().face_count(), 1), relaxed_at_(index.mesh().vertex_count(), 0) {
   const TriangleMesh& input = index.mesh();
   for (int v = 0; v < input.vertex_count(); ++v) {
     VertexData& d = vertex_[v];
