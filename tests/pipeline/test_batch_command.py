@@ -56,7 +56,9 @@ def statuses(out):
 
 def identities(out):
     """Files as the system tells them apart: another one in the same place, or new content, is a difference."""
-    return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in out.rglob("*.hq.json")}
+    # Not by rglob: folders of jobs that are running come and go, which os.walk() passes over.
+    found = [Path(folder) / name for folder, _, names in os.walk(out) for name in names if name.endswith(".hq.json")]
+    return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in found}
 
 
 def readable(out):
