@@ -45,15 +45,17 @@ def cut_edges(obj) -> np.ndarray:
 
 
 def stretch_of(obj) -> np.ndarray:
-    """(F,) longest side of each face in the map, by its length on the surface."""
+    """(F,) longest side of each face in the map, by its length on the surface.
+
+    Sides of less than a hundredth of the mean count as that long: rounding shows in where they end, and between islands it is far.
+    """
     polygons, places, points = polygons_of(obj), uv_of(obj.data.uv_layers.active), points_of(obj)
     starts = np.cumsum(polygons.sizes) - polygons.sizes
     following = np.arange(1, len(places) + 1)
     following[starts + polygons.sizes - 1] = starts
     on_surface = points[polygons.vertices]
-    ratio = np.linalg.norm(places[following] - places, axis=1) / np.linalg.norm(
-        on_surface[following] - on_surface, axis=1
-    ).clip(1e-9)
+    length = np.linalg.norm(on_surface[following] - on_surface, axis=1)
+    ratio = np.linalg.norm(places[following] - places, axis=1) / length.clip(0.01 * length.mean())
     return np.maximum.reduceat(ratio, starts)
 
 
