@@ -47,7 +47,7 @@ def cut_edges(obj) -> np.ndarray:
 def stretch_of(obj) -> np.ndarray:
     """(F,) longest side of each face in the map, by its length on the surface.
 
-    Sides of less than a hundredth of the mean count as that long: rounding shows in where they end, and between islands it is far.
+    Sides of less than a twentieth of the mean count as that long: what their ends are off by would show, and between islands it is far.
     """
     polygons, places, points = polygons_of(obj), uv_of(obj.data.uv_layers.active), points_of(obj)
     starts = np.cumsum(polygons.sizes) - polygons.sizes
@@ -55,7 +55,7 @@ def stretch_of(obj) -> np.ndarray:
     following[starts + polygons.sizes - 1] = starts
     on_surface = points[polygons.vertices]
     length = np.linalg.norm(on_surface[following] - on_surface, axis=1)
-    ratio = np.linalg.norm(places[following] - places, axis=1) / length.clip(0.01 * length.mean())
+    ratio = np.linalg.norm(places[following] - places, axis=1) / length.clip(0.05 * length.mean())
     return np.maximum.reduceat(ratio, starts)
 
 
