@@ -47,7 +47,7 @@ def cut_edges(obj) -> np.ndarray:
 def stretch_of(obj) -> np.ndarray:
     """(F,) longest side of each face in the map, by its length on the surface.
 
-    Sides of less than a twentieth of the mean count as that long: what their ends are off by would show, and between islands it is far.
+    Sides of less than a twentieth of the mean count as that long: their ends are a little off, and far between islands.
     """
     polygons, places, points = polygons_of(obj), uv_of(obj.data.uv_layers.active), points_of(obj)
     starts = np.cumsum(polygons.sizes) - polygons.sizes
