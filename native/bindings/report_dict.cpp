@@ -85,6 +85,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["refined_places"] = repairs.refined_places;
   result["reached_places"] = repairs.reached_places;
   result["raised_places"] = repairs.raised_places;
+  result["ended_searches"] = repairs.ended_searches;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
   result["restored_quads"] = repairs.restored_quads;
   return result;

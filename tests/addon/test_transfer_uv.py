@@ -45,17 +45,15 @@ def cut_edges(obj) -> np.ndarray:
 
 
 def stretch_of(obj) -> np.ndarray:
-    """(F,) longest side of each face in the map, by its length on the surface.
-
-    Sides of less than a twentieth of the mean count as that long: their ends are a little off, and far between islands.
-    """
+    """(F,) longest side of each face in the map, by its length on the surface."""
     polygons, places, points = polygons_of(obj), uv_of(obj.data.uv_layers.active), points_of(obj)
     starts = np.cumsum(polygons.sizes) - polygons.sizes
     following = np.arange(1, len(places) + 1)
     following[starts + polygons.sizes - 1] = starts
     on_surface = points[polygons.vertices]
-    length = np.linalg.norm(on_surface[following] - on_surface, axis=1)
-    ratio = np.linalg.norm(places[following] - places, axis=1) / length.clip(0.05 * length.mean())
+    ratio = np.linalg.norm(places[following] - places, axis=1) / np.linalg.norm(
+        on_surface[following] - on_surface, axis=1
+    ).clip(1e-9)
     return np.maximum.reduceat(ratio, starts)
 
 

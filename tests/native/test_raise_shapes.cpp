@@ -48,6 +48,21 @@ TEST(RaiseShapes, AConcaveQuadGetsAGoodShapeAndWhatIsFarStays) {
     }
 }
 
+TEST(RaiseShapes, WhatEndsASearchIsCounted) {
+  Square square;
+  square.quads.positions[id(6, 6)] = {6.7, 6.7, 0};
+  square.quads.positions[id(2, 2)] = {2.7, 2.7, 0};
+  const auto raise = [&square](long long most) {
+    ImproveOptions options;
+    options.most_boxes_opened = most;
+    int ended = 0;
+    const int raised = raise_shapes(square.quads, square.input, square.features, square.index, options, RunContext{}, nullptr, &ended);
+    return std::array<int, 2>{raised, ended};
+  };
+  EXPECT_EQ(raise(0), (std::array<int, 2>{1, 1})) << "the first is looked at, the second is not";
+  EXPECT_EQ(raise(ImproveOptions{}.most_boxes_opened), (std::array<int, 2>{1, 0}));
+}
+
 TEST(RaiseShapes, GoodShapesStay) {
   Square square;
   square.quads.positions[id(6, 6)] = {6.2, 6.2, 0};

@@ -80,7 +80,7 @@ void share_moves(const CurveGeometry& curve, const CurveSpacing& spacing, double
 /// Of an open chain, whose ends have no room.
 std::vector<double> spaced_between_ends(const CurveGeometry& curve, const CurveSpacing& spacing) {
   constexpr double kNearEnough = 0.01;
-  constexpr double kLeftOver = 0.2;  // of what could be gained: the last of it takes the largest moves
+  constexpr double kLeftOver = 0.25;  // of what could be gained: the last of it takes the largest moves
   std::vector<double> best = spacing.arc, placed;
   const double before = largest_of(curve, spacing.arc);
   double high = before, low = 0;

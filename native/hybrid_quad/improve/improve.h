@@ -24,6 +24,9 @@ struct ImproveOptions {
   double target_length = 0;        ///< mean quad edge, 0 = measured
   Agreement agreement;  ///< what of the surface has to agree with a quad (flawed_quads), so that there is no doubt
   Agreement least_agreement;  ///< what has to, or the quad is flawed beyond doubt: no shape is worth that
+  /// Of the surface's tree, by a search for better shapes, before it ends: where parts are crumpled and nearly flat a look opens hundreds
+  /// instead of ten or twenty, which would take minutes.
+  long long most_boxes_opened = 40'000'000;
 };
 
 struct ImproveReport {
@@ -90,10 +93,10 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
 /// places are given. A side is split in three, or two sides one after the other, and the vertices of the quad, of those around it and
 /// within these find new places as in raise_shapes, where that leaves fewer such quads or a much better worst one. The rest of the mesh
 /// stays. No more are flawed or in doubt afterwards, and there are hardly more quads: a fiftieth, or eight.
-/// \param whole  as for improve_quads
+/// \param whole  as for improve_quads  \param ended_searches  null, or one more where options.most_boxes_opened has ended it with quads left
 /// \returns sides split
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
+                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr, int* ended_searches = nullptr);
 
 /// Against quads that are still flawed: these and some rings around are refined, three by three, and relaxed, where that leaves
 /// fewer. Where sides cut through what they should go around, all of them get bends at once. Much more is changed than by
@@ -109,10 +112,10 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 /// spread over all quads (improve_quads) leave a few bad ones for the sake of many good ones. Connectivity stays; a place is kept
 /// only if no more quads are flawed (by the agreement that improving asks for) or folded there, the worst is no worse, and all
 /// together are better.
-/// \param whole  as for improve_quads
+/// \param whole  as for improve_quads  \param ended_searches  as for split_folded_quads
 /// \returns places where shapes are better now; 0: nothing has moved
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr, int* ended_searches = nullptr);
 
 /// Where the quads end short of the surface, as at the tips of fingers, horns and fins, which lie inside a quad once it is extracted or off
 /// which quads slip while they get better shapes: moves vertices there over the surface so that the quads come nearer to the points

@@ -8,7 +8,7 @@
 namespace hybrid_quad {
 
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole, int* ended_searches) {
   constexpr double kPoor = 0.2;
   constexpr int kMostRings = 3;
   constexpr int kLeastEffort = 2000, kEffort = 4;  // vertices moved down, and for every vertex of the mesh
@@ -28,7 +28,10 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
   long long effort = kLeastEffort + static_cast<long long>(kEffort) * piece.mesh.vertex_count();
   int raised = 0;
   for (const auto& [shape, q] : poor) {
-    if (measure.boxes_opened() > kMostBoxesOpened) break;
+    if (measure.boxes_opened() > options.most_boxes_opened) {
+      if (ended_searches) ++*ended_searches;
+      break;
+    }
     std::vector<int> around(piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
     for (int rings = 0; rings <= kMostRings && effort > 0 && shape_of(piece.mesh, q) < kPoor; ++rings) {
       context.checkpoint();

@@ -20,10 +20,6 @@ std::vector<int> with_ring(const EditMesh& mesh, const std::vector<int>& vertice
 /// At or below this scaled Jacobian a quad is concave or a triangle, or hardly better: more than nothing, as files round.
 constexpr double kFolded = 0.01;
 
-/// Of the surface's tree, opened in search of better shapes, after which none are sought any more: where parts are crumpled and nearly
-/// flat a look opens hundreds instead of ten or twenty, which would take minutes.
-constexpr long long kMostBoxesOpened = 40'000'000;
-
 /// Of some quads together.
 struct Shapes {
   int flaws = 0;   ///< FlawMeasure::flaws, summed

@@ -36,8 +36,12 @@ class FoldedSplitter {
     is_futile_.assign(quads_.quads.size(), 0);
     if (worst_folded() < 0) return 0;
     find_quads_at();
-    for (int q = worst_folded(); q >= 0 && failures_left_ > 0 && boxes_opened_ <= kMostBoxesOpened; q = worst_folded()) {
+    for (int q = worst_folded(); q >= 0 && failures_left_ > 0; q = worst_folded()) {
       context_.checkpoint();
+      if (boxes_opened_ > options_.most_boxes_opened) {
+        is_ended_ = true;
+        break;
+      }
       is_futile_[q] = 1;
       const int split_sides = split(q);
       if (split_sides == 0) --failures_left_;
@@ -45,6 +49,7 @@ class FoldedSplitter {
     }
     return splits;
   }
+  bool is_ended() const { return is_ended_; }  ///< by ImproveOptions::most_boxes_opened
 
  private:
   struct Trial {
@@ -222,6 +227,7 @@ class FoldedSplitter {
   double edge_;
   std::size_t most_quads_;
   long long boxes_opened_ = 0;
+  bool is_ended_ = false;
   int failures_left_;  ///< each takes a tenth of a second or so, whatever the size of the mesh
   std::vector<std::vector<int>> quads_at_;
   std::vector<char> is_futile_;  ///< #Q
@@ -230,8 +236,11 @@ class FoldedSplitter {
 }  // namespace
 
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
-  return FoldedSplitter(quads, input, features, index, whole ? *whole : index, options, context).run();
+                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole, int* ended_searches) {
+  FoldedSplitter splitter(quads, input, features, index, whole ? *whole : index, options, context);
+  const int splits = splitter.run();
+  if (ended_searches) *ended_searches += splitter.is_ended();
+  return splits;
 }
 
 }  // namespace hybrid_quad

@@ -118,7 +118,7 @@ double deviation_of(const Workpiece& piece, const Chain& chain) {
 bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double largest) {
   constexpr int kRings = 3, kSweeps = 4;
   constexpr double kEps = 1e-3;
-  constexpr double kShares[] = {0.4, 0.15, 0.07};  // of the shorter edge at a vertex: how far it may move
+  constexpr double kShares[] = {0.3, 0.15, 0.07};  // of the shorter edge at a vertex: how far it may move
   const CurveGeometry& curve = piece.curves[piece.mesh.anchor(chain.vertices[0])];
   const Place place(piece, chain, kRings);
   std::vector<double> quality;
@@ -142,8 +142,10 @@ bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double lar
   return false;
 }
 
-/// Spreads the chains that deviate most. \returns how many have changed
-int spread_farthest(Workpiece& piece, Smoother& smoother, const std::vector<Chain>& chains, const RunContext& context) {
+}  // namespace
+
+int spread_along_bends(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  const std::vector<Chain> chains = chains_of(piece);
   std::vector<double> deviation;
   for (const Chain& chain : chains) deviation.push_back(deviation_of(piece, chain));
   const double largest = deviation.empty() ? 0.0 : *std::max_element(deviation.begin(), deviation.end());
@@ -153,20 +155,6 @@ int spread_farthest(Workpiece& piece, Smoother& smoother, const std::vector<Chai
   for (std::size_t i = 0; i < chains.size(); ++i) {
     context.checkpoint(static_cast<double>(i) / chains.size());
     if (deviation[i] > kCounts * largest) changed += spread(piece, smoother, chains[i], deviation[i]);
-  }
-  return changed;
-}
-
-}  // namespace
-
-int spread_along_bends(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr int kTimes = 2;  // each takes three quarters of what is left to gain; more of it costs the quads more than it brings
-  const std::vector<Chain> chains = chains_of(piece);
-  int changed = 0;
-  for (int time = 0; time < kTimes; ++time) {
-    const int more = spread_farthest(piece, smoother, chains, context);
-    if (more == 0) break;
-    changed += more;
   }
   return changed;
 }

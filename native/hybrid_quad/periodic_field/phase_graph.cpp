@@ -104,29 +104,14 @@ void project_edges(const PhaseGraph& fine, PhaseAggregation& result) {
   merge_parallel_edges(coarse.edges);
 }
 
-/// The sum of their transported values, number by number: compilers pair the parts of complex sums in ways that take longer.
 PhasePair mean_of_neighbours(const PhaseGraph& graph, int i, const std::vector<PhasePair>& z) {
-  double a_re = 0, a_im = 0, b_re = 0, b_im = 0;
+  PhasePair sum{{0, 0}, {0, 0}};
   for (int e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-    const PhaseTransport& t = graph.incoming[e];
-    const PhasePair& from = z[graph.neighbour[e]];
-    const Complex x = times(t.a, from.a), y = times(t.b, from.b);
-    switch (t.turn & 3) {  // adds what turned() makes of x and y
-      case 0:
-        a_re += x.real(), a_im += x.imag(), b_re += y.real(), b_im += y.imag();
-        break;
-      case 1:
-        a_re += y.real(), a_im -= y.imag(), b_re += x.real(), b_im += x.imag();
-        break;
-      case 2:
-        a_re += x.real(), a_im -= x.imag(), b_re += y.real(), b_im -= y.imag();
-        break;
-      default:
-        a_re += y.real(), a_im += y.imag(), b_re += x.real(), b_im -= x.imag();
-        break;
-    }
+    const PhasePair t = transported(graph.incoming[e], z[graph.neighbour[e]]);
+    sum.a += t.a;
+    sum.b += t.b;
   }
-  return {{a_re, a_im}, {b_re, b_im}};
+  return sum;
 }
 
 }  // namespace

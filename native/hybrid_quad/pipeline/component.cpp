@@ -232,6 +232,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
     const int splits = put_best_right(&Finishing::split_folded);
     best.repairs.split_sides += splits;
     if (splits > 0) best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
+    best.repairs.ended_searches += finishing.ended_searches();
   }
   best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh), &whole, least_agreement(whole));
   return best;

@@ -36,6 +36,8 @@ class Finishing {
   int raise_shapes(QuadMesh& mesh, const RunContext& context) const;
   /// Sides of quads that no places put right (split_folded_quads). \returns their number
   int split_folded(QuadMesh& mesh, const RunContext& context) const;
+  /// By raise_shapes and split_folded so far, that would have taken too long (ImproveOptions::most_boxes_opened).
+  int ended_searches() const { return ended_searches_; }
   /// What the improvement made of the quads at mirror planes must still be fit for mirroring.
   void make_mirrorable(QuadMesh& mesh, const RunContext& context) const;
 
@@ -50,6 +52,7 @@ class Finishing {
   const RemeshOptions& asked_;
   GuideMap guides_;
   ImproveOptions improve_;
+  mutable int ended_searches_ = 0;
 };
 
 }  // namespace hybrid_quad

@@ -9,7 +9,7 @@ double peak_memory_mb();
 double resident_memory_mb();
 
 /// Has the C library keep what is freed for what is allocated next, where it would give it back to the system and soon ask for
-/// it again, at the price of every page's first touch. For a process that ends with its run; the GNU library only.
+/// it again, at the price of every page's first touch; on Linux pages are large then, where the system has such (madvise(2)). For a process that ends with its run; the GNU library only.
 void keep_freed_memory();
 
 }  // namespace hybrid_quad

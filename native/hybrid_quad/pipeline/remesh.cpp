@@ -284,6 +284,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   refined_places += other.refined_places;
   reached_places += other.reached_places;
   raised_places += other.raised_places;
+  ended_searches += other.ended_searches;
   opened_flat_quads += other.opened_flat_quads;
   restored_quads += other.restored_quads;
   return *this;
