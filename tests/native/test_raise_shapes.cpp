@@ -52,15 +52,17 @@ TEST(RaiseShapes, WhatEndsASearchIsCounted) {
   Square square;
   square.quads.positions[id(6, 6)] = {6.7, 6.7, 0};
   square.quads.positions[id(2, 2)] = {2.7, 2.7, 0};
+  using Counts = std::array<int, 2>;  // places raised, searches ended
   const auto raise = [&square](long long most) {
     ImproveOptions options;
     options.most_boxes_opened = most;
-    int ended = 0;
-    const int raised = raise_shapes(square.quads, square.input, square.features, square.index, options, RunContext{}, nullptr, &ended);
-    return std::array<int, 2>{raised, ended};
+    Counts counts{0, 0};
+    counts[0] =
+        raise_shapes(square.quads, square.input, square.features, square.index, options, RunContext{}, nullptr, &counts[1]);
+    return counts;
   };
-  EXPECT_EQ(raise(0), (std::array<int, 2>{1, 1})) << "the first is looked at, the second is not";
-  EXPECT_EQ(raise(ImproveOptions{}.most_boxes_opened), (std::array<int, 2>{1, 0}));
+  EXPECT_EQ(raise(0), (Counts{1, 1})) << "the first is looked at, the second is not";
+  EXPECT_EQ(raise(ImproveOptions{}.most_boxes_opened), (Counts{1, 0}));
 }
 
 TEST(RaiseShapes, GoodShapesStay) {
@@ -127,7 +129,7 @@ TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
   ASSERT_TRUE(any_folded(cross.quads));
   ASSERT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
   const auto call = [&](auto function) {
-    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}, nullptr);
+    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}, nullptr, nullptr);
   };
   EXPECT_EQ(call(raise_shapes), 0);  // all vertices are given
   EXPECT_GT(call(split_folded_quads), 0);

@@ -96,7 +96,8 @@ int split_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Feature
 /// \param whole  as for improve_quads  \param ended_searches  null, or one more where options.most_boxes_opened has ended it with quads left
 /// \returns sides split
 int split_folded_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr, int* ended_searches = nullptr);
+                       const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr,
+                       int* ended_searches = nullptr);
 
 /// Against quads that are still flawed: these and some rings around are refined, three by three, and relaxed, where that leaves
 /// fewer. Where sides cut through what they should go around, all of them get bends at once. Much more is changed than by
@@ -115,7 +116,8 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 /// \param whole  as for improve_quads  \param ended_searches  as for split_folded_quads
 /// \returns places where shapes are better now; 0: nothing has moved
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr, int* ended_searches = nullptr);
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr,
+                 int* ended_searches = nullptr);
 
 /// Where the quads end short of the surface, as at the tips of fingers, horns and fins, which lie inside a quad once it is extracted or off
 /// which quads slip while they get better shapes: moves vertices there over the surface so that the quads come nearer to the points

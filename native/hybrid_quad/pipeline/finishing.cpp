@@ -111,13 +111,15 @@ int Finishing::reach_cut_parts(QuadMesh& mesh, const RunContext& context) const 
 }
 
 int Finishing::raise_shapes(QuadMesh& mesh, const RunContext& context) const {
-  const int places = hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, &ended_searches_);
+  const int places =
+      hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, &ended_searches_);
   if (places > 0 && asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
   return places;
 }
 
 int Finishing::split_folded(QuadMesh& mesh, const RunContext& context) const {
-  const int splits = split_folded_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, &ended_searches_);
+  const int splits =
+      split_folded_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, &ended_searches_);
   if (splits > 0) settle_features(mesh);
   return splits;
 }

@@ -92,7 +92,7 @@ struct RepairRecord {
   int refined_places = 0;        ///< around flawed quads that were refined, where that was not enough
   int reached_places = 0;        ///< tips that quads had ended short of
   int raised_places = 0;         ///< around quads of poor shape that got a better one in the end
-  int ended_searches = 0;        ///< for better shapes, with quads left, as each look at the surface takes long
+  int ended_searches = 0;  ///< for better shapes, with quads left, as each look at the surface takes long
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
 
