@@ -107,6 +107,38 @@ def test_beyond_a_fold_nothing_is_stretched(angle):
     assert (np.linalg.norm(np.roll(values, -1, axis=1) - values, axis=2) <= on_surface + 1e-12).all()
 
 
+def test_a_narrow_face_along_a_bent_wall_stays_on_the_side_of_its_corners():
+    """A disc and a ring around it, an island each: the middle of a narrow face of the ring is over the disc."""
+    angle = 2 * np.pi * np.arange(AROUND) / AROUND
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(AROUND)], axis=1)
+    points = np.concatenate([np.zeros((1, 3)), circle, 2 * circle])
+    inner = 1 + np.arange(AROUND)
+    following = 1 + (np.arange(AROUND) + 1) % AROUND
+    disc = np.stack([np.zeros(AROUND, int), inner, following], axis=1)
+    ring = np.concatenate(
+        [
+            np.stack([inner, inner + AROUND, following + AROUND], axis=1),
+            np.stack([inner, following + AROUND, following], axis=1),
+        ]
+    )
+    triangles = np.concatenate([disc, ring])
+    mesh = TriangleMesh(points, triangles, np.arange(triangles.size).reshape(-1, 3), np.arange(len(triangles)))
+    places = points[triangles][:, :, :2]
+    places[AROUND:] += (9, 0)
+    walk = SurfaceWalk(mesh)
+    walls = walk.walls(places.reshape(-1, 2), 1e-6)
+    assert walls.sum() == 2 * AROUND
+    face = np.concatenate([circle[[0, 2]], 1.001 * circle[[2, 0]]])
+    middle = places_on(mesh, face.mean(axis=0)[None])
+    assert middle.triangles[0] < AROUND
+    corners = walk.corner_places(walls, middle, face[None], np.arange(4)[None], places_on(mesh, face))
+    assert np.allclose(corners.values(mesh.corners, places.reshape(-1, 2), is_extended=True), face[:, :2] + (9, 0))
+    # One that lies across the wall goes where its middle is.
+    across = np.concatenate([0.99 * circle[[0, 2]], 1.001 * circle[[2, 0]]])
+    corners = walk.corner_places(walls, middle, across[None], np.arange(4)[None], places_on(mesh, across))
+    assert np.allclose(corners.values(mesh.corners, places.reshape(-1, 2), is_extended=True), across[:, :2])
+
+
 def test_on_the_border_the_value_is_that_of_the_border():
     mesh, places = folded(1.0)
     bent = places**2  # not linear, so that what goes on from the middle arrives elsewhere
@@ -122,13 +154,13 @@ def test_on_the_border_the_value_is_that_of_the_border():
 
 @pytest.mark.parametrize("height", [0.1, 1e-6, 0.0])
 def test_slopes_of_slivers_are_not_followed(height):
-    points = np.array([(0, 0, 0), (1, 0, 0), (0.5, height, 0)])
-    mesh = TriangleMesh(points, np.array([(0, 1, 2)]), np.array([(0, 1, 2)]), np.array([0]))
-    places = np.array([(0, 0), (1, 0), (0.5, 0.2)])
+    points = np.array([(0, 0, 0), (1, 0, 0), (0.5, height, 0), (9, 9, 9), (9, 9, 8), (9, 8, 9)])
+    mesh = TriangleMesh(points, np.array([(0, 1, 2), (3, 4, 5)]), np.arange(6).reshape(2, 3), np.array([0, 1]))
+    places = np.array([(0, 0), (1, 0), (0.5, 0.2), (7, 7), (7, 8), (8, 7)])
     face = np.array([(0.4, -0.2, 0), (0.6, -0.2, 0), (0.6, 0.2, 0), (0.4, 0.2, 0)])
-    elsewhere = Places(np.full(4, -1), np.full((4, 3), 1 / 3))
+    elsewhere = Places(np.full(4, 1), np.full((4, 3), 1 / 3))
     middle = Places(np.array([0]), np.array([(0.5, 0.5, 0)]))
-    corners = SurfaceWalk(mesh).corner_places(np.ones((1, 3), bool), middle, face[None], np.arange(4)[None], elsewhere)
+    corners = SurfaceWalk(mesh).corner_places(np.ones((2, 3), bool), middle, face[None], np.arange(4)[None], elsewhere)
     values = corners.values(mesh.corners, places, is_extended=True)
     if height == 0.1:
         assert np.allclose(values, face[:, :2] * (1, 2))

@@ -1,8 +1,9 @@
 """Walks over a triangle mesh that stop at walls, where what its corners carry is cut.
 
-A face that lies across a wall belongs to the side on which its middle is. What its corners beyond the wall get is looked for among the
-triangles that can be reached from the middle without crossing a wall, so that it comes from the same side even where one
-island of a UV map, say, has both sides of the seam.
+A face whose corners all lie on one side of the walls belongs there. The place nearest to its middle would not tell for a narrow
+face along a bent wall: the middle is beside the surface, and can be across the wall from all the corners. It tells for faces that
+lie across a wall. What corners beyond the wall get is looked for among the triangles that can be reached on the face's side
+without crossing a wall, so that it comes from there even where one island of a UV map, say, has both sides of the seam.
 """
 
 from __future__ import annotations
@@ -25,6 +26,9 @@ _PAIRS = 500_000
 
 # Triangles are reached when they come as near to a face's middle as its farthest corner, and a little more.
 _REACH = 1.01
+
+# Of a face's size: the distance up to which a corner lies on a side.
+_NO_GAP = 1e-6
 
 # Of a face's size: the slope of a value across a triangle less high than this is that of its rounding.
 _THIN = 1e-4
@@ -128,7 +132,7 @@ class SurfaceWalk:
     def corner_places(
         self, walls: BoolArray, middles: Places, points: FloatArray, vertices: Indices, unbounded: Places
     ) -> CornerPlaces:
-        """Places for the corners of faces, on the side of the walls where the faces' middles are.
+        """Places for the corners of faces, all of a face on one side of the walls: where they all lie, or else where its middle is.
 
         Parameters
         ----------
@@ -142,10 +146,34 @@ class SurfaceWalk:
         unbounded : Places
             Of the f * m corners, whatever the walls.
         """
-        count, each = points.shape[:2]
-        places = Places(unbounded.triangles.copy(), unbounded.weights.copy())
+        each = points.shape[1]
+        places, beyond = self._bounded(walls, middles, points, unbounded)
+        middles, moved = self._with_corners(walls, middles, points, unbounded, places, beyond)
+        if moved:
+            places, beyond = self._bounded(walls, middles, points, unbounded)
+        face = beyond // each
+        kept, extended = self._extended(
+            points.reshape(-1, 3)[beyond],
+            places.among(beyond),
+            middles.among(face),
+            self._reach(middles, points)[1][face],
+        )
+        keys = vertices.ravel()[beyond] * len(self.mesh.vertices) + places.triangles[beyond]
+        return CornerPlaces(places, beyond, kept, extended, np.unique(keys, return_inverse=True)[1].reshape(-1))
+
+    def _reach(self, middles: Places, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Centres (f, 3) and radii (f,) of what is looked at for faces with these corners (f, m, 3)."""
         centers = middles.values(self.mesh.vertices, self.mesh.points)
         radii = _REACH * np.linalg.norm(points - centers[:, None], axis=2).max(axis=1)
+        return centers, radii
+
+    def _bounded(
+        self, walls: BoolArray, middles: Places, points: FloatArray, unbounded: Places
+    ) -> tuple[Places, Indices]:
+        """Places of corners on the sides of the walls where the faces' middles are; and the corners for which these are other ones."""
+        count, each = points.shape[:2]
+        places = Places(unbounded.triangles.copy(), unbounded.weights.copy())
+        centers, radii = self._reach(middles, points)
         found = [np.zeros(0, np.int64)]
         for first in range(0, count, _FACES):
             part = slice(first, first + _FACES)
@@ -156,13 +184,43 @@ class SurfaceWalk:
             inside = self._nearest_reached(points.reshape(-1, 3)[own], own // each - first, owners, reached)
             places.triangles[own], places.weights[own] = inside
             found.append(own)
-        beyond = np.concatenate(found)
-        face = beyond // each
-        kept, extended = self._extended(
-            points.reshape(-1, 3)[beyond], places.among(beyond), middles.among(face), radii[face]
-        )
-        keys = vertices.ravel()[beyond] * len(self.mesh.vertices) + places.triangles[beyond]
-        return CornerPlaces(places, beyond, kept, extended, np.unique(keys, return_inverse=True)[1].reshape(-1))
+        return places, np.concatenate(found)
+
+    def _with_corners(
+        self,
+        walls: BoolArray,
+        middles: Places,
+        points: FloatArray,
+        unbounded: Places,
+        bounded: Places,
+        beyond: Indices,
+    ) -> tuple[Places, bool]:
+        """The faces' middles, on the side of a corner `beyond` where all corners lie there and not on the middle's; and if any is."""
+        count, each = points.shape[:2]
+        triangles, weights = middles.triangles.copy(), middles.weights.copy()
+        centers, radii = self._reach(middles, points)
+        lies_aside = self._gaps(points.reshape(-1, 3), bounded).reshape(count, each) > _NO_GAP * radii[:, None]
+        targets = np.concatenate([points, centers[:, None]], axis=1)
+        moved = np.zeros(count, np.bool_)
+        for corner in range(each):
+            is_beyond = np.zeros(count, np.bool_)
+            is_beyond[beyond[beyond % each == corner] // each] = True
+            undecided = np.flatnonzero(is_beyond & lies_aside.any(axis=1) & ~moved)
+            for first in range(0, len(undecided), _FACES):
+                faces = undecided[first : first + _FACES]
+                start = unbounded.triangles[faces * each + corner]
+                owners, reached = self._reached(walls, start, centers[faces], radii[faces])
+                own = np.repeat(np.arange(len(faces)), each + 1)
+                found = self._nearest_reached(targets[faces].reshape(-1, 3), own, owners, reached)
+                gaps = self._gaps(targets[faces].reshape(-1, 3), found).reshape(-1, each + 1)[:, :each]
+                inside = np.flatnonzero((gaps <= _NO_GAP * radii[faces, None]).all(axis=1))
+                moved[faces[inside]] = True
+                triangles[faces[inside]], weights[faces[inside]] = found.among((each + 1) * inside + each)
+        return Places(triangles, weights), bool(moved.any())
+
+    def _gaps(self, points: FloatArray, places: Places) -> FloatArray:
+        """(k,) distances of points from their places."""
+        return np.asarray(np.linalg.norm(points - places.values(self.mesh.vertices, self.mesh.points), axis=1))
 
     def _extended(
         self, points: FloatArray, inside: Places, middles: Places, radii: FloatArray
