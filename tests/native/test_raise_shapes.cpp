@@ -128,15 +128,16 @@ TEST(SplitFolded, AQuadBetweenCornersThatIsATriangleIsSplit) {
   ASSERT_TRUE(violations_of(cross.quads).empty());
   ASSERT_TRUE(any_folded(cross.quads));
   ASSERT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
-  const auto call = [&](auto function) {
-    return function(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}, nullptr, nullptr);
+  const auto split = [&] {
+    return split_folded_quads(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{});
   };
-  EXPECT_EQ(call(raise_shapes), 0);  // all vertices are given
-  EXPECT_GT(call(split_folded_quads), 0);
+  EXPECT_EQ(raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}), 0)
+      << "all vertices are given";
+  EXPECT_GT(split(), 0);
   EXPECT_FALSE(any_folded(cross.quads));
   EXPECT_TRUE(violations_of(cross.quads).empty());
   EXPECT_TRUE(flawed_quads(cross.quads, *cross.index, {}).empty());
-  EXPECT_EQ(call(split_folded_quads), 0);
+  EXPECT_EQ(split(), 0);
 }
 
 TEST(SplitFolded, WhatIsFarStaysAndNothingIsSplitWhereNoQuadIsFolded) {
@@ -171,6 +172,22 @@ TEST(SplitFolded, NoQuadIsTurnedOver) {
     EXPECT_LE(flawed_quads(cross.quads, *cross.index, {}).size(), flawed) << c;
     EXPECT_FALSE(any_folded(cross.quads)) << c;
   }
+}
+
+TEST(RaiseShapes, WhereItHasFailedNothingIsTriedAgain) {
+  Cross given(VertexKind::kCorner, 10), movable(VertexKind::kCurve, 10);
+  FutileMending futile(1);
+  const auto raise = [&futile](Cross& cross) {
+    return raise_shapes(cross.quads, cross.input, cross.features, *cross.index, ImproveOptions{}, RunContext{}, nullptr, nullptr,
+                        &futile);
+  };
+  EXPECT_EQ(raise(given), 0);
+  const QuadMesh before = movable.quads;
+  ASSERT_EQ(before.positions, given.quads.positions);
+  EXPECT_EQ(raise(movable), 0) << "the same place";
+  EXPECT_EQ(movable.quads.positions, before.positions);
+  futile = FutileMending(1);
+  EXPECT_GT(raise(movable), 0);
 }
 
 TEST(RaiseShapes, VerticesSlideAlongTheirCurves) {

@@ -3,6 +3,7 @@
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/frame_field/guide_map.h"
+#include "hybrid_quad/improve/futile_mending.h"
 #include "hybrid_quad/improve/ring_pulls.h"
 #include "hybrid_quad/mesh/quad_mesh.h"
 #include "hybrid_quad/mesh/segment_index.h"
@@ -114,10 +115,11 @@ int refine_flawed_quads(QuadMesh& quads, const TriangleMesh& input, const Featur
 /// only if no more quads are flawed (by the agreement that improving asks for) or folded there, the worst is no worse, and all
 /// together are better.
 /// \param whole  as for improve_quads  \param ended_searches  as for split_folded_quads
+/// \param futile  null, or where it has failed in meshes like this one, elsewhere perhaps different: not tried again there
 /// \returns places where shapes are better now; 0: nothing has moved
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                  const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr,
-                 int* ended_searches = nullptr);
+                 int* ended_searches = nullptr, FutileMending* futile = nullptr);
 
 /// Where the quads end short of the surface, as at the tips of fingers, horns and fins, which lie inside a quad once it is extracted or off
 /// which quads slip while they get better shapes: moves vertices there over the surface so that the quads come nearer to the points

@@ -8,7 +8,8 @@
 namespace hybrid_quad {
 
 int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole, int* ended_searches) {
+                 const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole, int* ended_searches,
+                 FutileMending* futile) {
   constexpr double kPoor = 0.2;
   constexpr int kMostRings = 3;
   constexpr int kLeastEffort = 2000, kEffort = 4;  // vertices moved down, and for every vertex of the mesh
@@ -32,6 +33,8 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
       if (ended_searches) ++*ended_searches;
       break;
     }
+    if (futile && futile->knows(piece, q)) continue;
+    const int raised_before = raised;
     std::vector<int> around(piece.mesh.quad(q).begin(), piece.mesh.quad(q).end());
     for (int rings = 0; rings <= kMostRings && effort > 0 && shape_of(piece.mesh, q) < kPoor; ++rings) {
       context.checkpoint();
@@ -40,6 +43,7 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
       effort -= descent.size();
       raised += descent.run(DescentPlan{});
     }
+    if (futile && effort > 0 && raised == raised_before) futile->remember(piece, q);
   }
   if (raised > 0) quads = piece.mesh.extract(piece.face);
   return raised;

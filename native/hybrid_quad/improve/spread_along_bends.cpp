@@ -1,6 +1,7 @@
 #include "hybrid_quad/improve/spread_along_bends.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "hybrid_quad/improve/chord_spacing.h"
 
@@ -100,13 +101,14 @@ class Place {
 };
 
 /// Whether quads bear what has become of them: the poorer they are, the less they may lose.
+/// \param before  of every quad
 bool is_borne(const Smoother& smoother, const std::vector<int>& quads, const std::vector<double>& before) {
   constexpr double kGood = 0.85, kPoor = 0.6, kLoss = 0.05, kLossOfPoor = 0.005, kMeanLoss = 0.006;
   double lost = 0;
-  for (std::size_t i = 0; i < quads.size(); ++i) {
-    const double now = smoother.signed_quality(quads[i]);
-    if (now < kGood && now < before[i] - (now < kPoor ? kLossOfPoor : kLoss)) return false;
-    lost += before[i] - now;
+  for (const int q : quads) {
+    const double now = smoother.signed_quality(q);
+    if (now < kGood && now < before[q] - (now < kPoor ? kLossOfPoor : kLoss)) return false;
+    lost += before[q] - now;
   }
   return lost <= kMeanLoss * static_cast<double>(quads.size());
 }
@@ -115,14 +117,13 @@ double deviation_of(const Workpiece& piece, const Chain& chain) {
   return largest_chord_deviation(piece.curves[piece.mesh.anchor(chain.vertices[0])], spacing_of(piece, chain, 0).arc);
 }
 
-bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double largest) {
+/// \param before  how good every quad was
+bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double largest, const std::vector<double>& before) {
   constexpr int kRings = 3, kSweeps = 4;
   constexpr double kEps = 1e-3;
   constexpr double kShares[] = {0.3, 0.15, 0.07};  // of the shorter edge at a vertex: how far it may move
   const CurveGeometry& curve = piece.curves[piece.mesh.anchor(chain.vertices[0])];
   const Place place(piece, chain, kRings);
-  std::vector<double> quality;
-  for (const int q : place.quads()) quality.push_back(smoother.signed_quality(q));
   for (const double share : kShares) {
     const CurveSpacing spacing = spacing_of(piece, chain, share);
     const std::vector<double> arc = spaced_by_chords(curve, spacing);
@@ -135,7 +136,7 @@ bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double lar
     }
     smoother.relax(place.free_vertices(), kSweeps, kEps);
     smoother.update_frames(place.quads(), false);
-    if (is_borne(smoother, place.quads(), quality)) return true;
+    if (is_borne(smoother, place.quads(), before)) return true;
     place.put_back(piece);
     smoother.update_frames(place.quads(), false);
   }
@@ -145,18 +146,32 @@ bool spread(Workpiece& piece, Smoother& smoother, const Chain& chain, double lar
 }  // namespace
 
 int spread_along_bends(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+  constexpr int kRounds = 4;
   const std::vector<Chain> chains = chains_of(piece);
-  std::vector<double> deviation;
-  for (const Chain& chain : chains) deviation.push_back(deviation_of(piece, chain));
-  const double largest = deviation.empty() ? 0.0 : *std::max_element(deviation.begin(), deviation.end());
-  if (largest < kNegligible * piece.h) return 0;
-  smoother.update_frames(false);
-  int changed = 0;
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    context.checkpoint(static_cast<double>(i) / chains.size());
-    if (deviation[i] > kCounts * largest) changed += spread(piece, smoother, chains[i], deviation[i]);
+  std::vector<double> quality;  // before all rounds, which share what quads may lose
+  int changes = 0;
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> deviation;
+    for (const Chain& chain : chains) deviation.push_back(deviation_of(piece, chain));
+    const double largest = deviation.empty() ? 0.0 : *std::max_element(deviation.begin(), deviation.end());
+    if (largest < kNegligible * piece.h || largest > kWorthwhile * last) break;
+    last = largest;
+    if (round == 0) {
+      smoother.update_frames(false);
+      quality.assign(piece.mesh.quad_count(), 0.0);
+      for (int q = 0; q < piece.mesh.quad_count(); ++q)
+        if (piece.mesh.alive(q)) quality[q] = smoother.signed_quality(q);
+    }
+    int changed = 0;
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      context.checkpoint((round + static_cast<double>(i) / chains.size()) / kRounds);
+      if (deviation[i] > kCounts * largest) changed += spread(piece, smoother, chains[i], deviation[i], quality);
+    }
+    if (changed == 0) break;
+    changes += changed;
   }
-  return changed;
+  return changes;
 }
 
 }  // namespace hybrid_quad

@@ -51,7 +51,8 @@ Agreement most_that_squares_pass(const TriangleMesh& mesh, const SurfaceIndex& w
 Agreement least_agreement(const SurfaceIndex& whole) { return {kEnough * whole.mesh().total_area(), true}; }
 
 Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options)
-    : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)) {
+    : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)),
+      futile_shapes_(std::sqrt(plan.mesh.total_area() / plan.quads)) {
   constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
   constexpr double kWeightOfSizes = 3;
   improve_.fit = options.fit;
@@ -111,8 +112,8 @@ int Finishing::reach_cut_parts(QuadMesh& mesh, const RunContext& context) const 
 }
 
 int Finishing::raise_shapes(QuadMesh& mesh, const RunContext& context) const {
-  const int places =
-      hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, &ended_searches_);
+  const int places = hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_,
+                                               &ended_searches_, &futile_shapes_);
   if (places > 0 && asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
   return places;
 }

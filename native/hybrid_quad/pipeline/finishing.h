@@ -53,6 +53,7 @@ class Finishing {
   GuideMap guides_;
   ImproveOptions improve_;
   mutable int ended_searches_ = 0;
+  mutable FutileMending futile_shapes_;  ///< of raise_shapes
 };
 
 }  // namespace hybrid_quad
