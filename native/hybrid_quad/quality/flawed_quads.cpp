@@ -164,6 +164,13 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   }
   Lookup unknown;
   Lookup& known = lookup ? *lookup : unknown;
+  // A face that points against the quad and is as near as the nearest one is no farther than any: mostly there is none, and one
+  // search for both is enough.
+  if (known.face >= 0) {
+    const SurfacePoint walked = surface.walk(centre, known.face);
+    known.face = walked.face;
+    if (walked.squared_distance < size * size && !points_against(surface, centre, walked, normal, kTouches * size, known)) return false;
+  }
   SurfaceIndex::Filter filter;
   filter.hint = known.face;
   const SurfacePoint near = surface.nearest(centre, filter);
