@@ -164,6 +164,37 @@ TEST(SplitFolded, WhatIsFarStaysAndNothingIsSplitWhereNoQuadIsFolded) {
       if (std::max(std::abs(i - 6), std::abs(j - 6)) > 3) { EXPECT_EQ(square.quads.positions[id(i, j)], before.positions[id(i, j)]); }
 }
 
+/// A corner in a place where it makes a quad concave, with corners all around.
+void fold_at(Square& square, int i, int j, const std::array<double, 2>& shift) {
+  square.quads.positions[id(i, j)] = {i + shift[0], j + shift[1], 0};
+  for (int y = j - 1; y <= j + 1; ++y)
+    for (int x = i - 1; x <= i + 1; ++x) {
+      square.quads.kind[id(x, y)] = VertexKind::kCorner;
+      square.quads.anchor[id(x, y)] = -1;
+    }
+}
+
+TEST(SplitFolded, TheLastSplitsAreSuchAsThereIsRoomFor) {
+  // Some splits add two quads, others with better shapes more; there may be eight more in all.
+  constexpr std::size_t kRoom = 8;
+  const std::vector<std::vector<std::array<double, 2>>> shifts = {
+      {{0.808, 0.540}, {0.795, 0.604}, {0.622, 0.757}, {0.839, 0.863}},
+      {{0.841, 0.868}, {0.906, 0.681}, {0.612, 0.830}},
+      {{0.442, 0.947}, {0.527, 0.835}, {0.796, 0.412}},
+      {{0.509, 0.865}, {0.881, 0.497}, {0.724, 0.948}},
+      {{0.461, 0.980}, {0.553, 0.878}, {0.971, 0.430}, {0.852, 0.649}}};
+  for (const auto& places : shifts) {
+    Square square;
+    const std::size_t before = square.quads.quads.size();
+    for (int k = 0; k < static_cast<int>(places.size()); ++k) fold_at(square, k % 2 ? 9 : 3, k / 2 ? 9 : 3, places[k]);
+    ASSERT_TRUE(any_folded(square.quads));
+    split_folded_quads(square.quads, square.input, square.features, square.index, ImproveOptions{}, RunContext{});
+    EXPECT_FALSE(any_folded(square.quads));
+    EXPECT_EQ(square.quads.quads.size(), before + kRoom);
+    EXPECT_TRUE(violations_of(square.quads).empty());
+  }
+}
+
 TEST(SplitFolded, NoQuadIsTurnedOver) {
   for (const int c : {8, 9, 10, 11}) {
     Cross cross(VertexKind::kCorner, c);

@@ -119,10 +119,10 @@ class FoldedSplitter {
     const int own = static_cast<int>(std::lower_bound(patch.quads.begin(), patch.quads.end(), q) - patch.quads.begin());
     std::optional<Trial> trial = Trial{patch.mesh, ring_around(patch.mesh, own), shapes_of_patch(patch.mesh)};
     const Shapes before = trial->shapes;
+    const std::size_t most = most_quads_ + patch.quads.size() - std::min(quads_.quads.size(), most_quads_);
     for (int splits = 1; splits <= kMostSplits; ++splits) {
       const int folded = splits == 1 ? own : worst_inside(*trial);
-      if (folded < 0 || !(trial = best_split(*trial, folded, before))) return 0;
-      if (quads_.quads.size() + trial->mesh.quads.size() - patch.quads.size() > most_quads_) return 0;
+      if (folded < 0 || !(trial = best_split(*trial, folded, before, most))) return 0;
       if (!is_worth_it(trial->shapes, before)) continue;
       patch.mesh = std::move(trial->mesh);
       put_back(patch, quads_);
@@ -140,11 +140,11 @@ class FoldedSplitter {
     return now.folded < before.folded || now.worst >= before.worst + kMuch;
   }
 
-  /// The first of the likeliest that is worth it, else the best of them that has no more flaws.
-  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before) {
+  /// The first of the likeliest that is worth it, else the best of them that has no more flaws. \param most  quads of the patch
+  std::optional<Trial> best_split(const Trial& start, int q, const Shapes& before, std::size_t most) {
     constexpr std::size_t kThorough = 3;
     const auto badness = [](const Trial& trial) { return std::make_tuple(trial.shapes.flaws, trial.shapes.folded, trial.shapes.lack); };
-    std::vector<Trial> trials = trials_at(q, start);
+    std::vector<Trial> trials = trials_at(q, start, most);
     std::stable_sort(trials.begin(), trials.end(), [&](const Trial& x, const Trial& y) { return badness(x) < badness(y); });
     if (trials.size() > kThorough) trials.resize(kThorough);
     std::optional<Trial> best;
@@ -172,7 +172,7 @@ class FoldedSplitter {
     return worst;
   }
 
-  std::vector<Trial> trials_at(int q, const Trial& start) {
+  std::vector<Trial> trials_at(int q, const Trial& start, std::size_t most) {
     constexpr DescentPlan kHaste{{0.3, 0.15, 0.07, 0.03}, 4};
     const QuadMesh& mesh = start.mesh;
     const Workpiece piece = located(mesh);
@@ -184,6 +184,7 @@ class FoldedSplitter {
       for (const SideSplit& split : sound_splits(q, side, splitter.across(q, side) < 0)) {
         std::vector<int> changed;
         Trial trial{splitter.split(split, path_of(mesh, piece, edge, split), &changed), start.moving, {}};
+        if (trial.mesh.quads.size() > most) continue;
         for (int v = static_cast<int>(mesh.positions.size()); v < static_cast<int>(trial.mesh.positions.size()); ++v) trial.moving.push_back(v);
         relax(trial, kHaste);
         trials.push_back(std::move(trial));
