@@ -103,7 +103,7 @@ class Place {
 /// Whether quads bear what has become of them: the poorer they are, the less they may lose.
 /// \param before  of every quad
 bool is_borne(const Smoother& smoother, const std::vector<int>& quads, const std::vector<double>& before) {
-  constexpr double kGood = 0.85, kPoor = 0.6, kLoss = 0.05, kLossOfPoor = 0.005, kMeanLoss = 0.006;
+  constexpr double kGood = 0.85, kPoor = 0.6, kLoss = 0.05, kLossOfPoor = 0.005, kMeanLoss = 0.012;
   double lost = 0;
   for (const int q : quads) {
     const double now = smoother.signed_quality(q);
