@@ -108,16 +108,24 @@ struct FirstPass {
   ComponentResult result;
 };
 
-/// Where features by angle are shorter than quads, a pass without what crowds them tells whether quads are better off (docs/decisions/0043).
+/// Where features by angle are shorter than quads, a pass without what crowds them tells whether quads are better off; where very many are,
+/// they are (docs/decisions/0043).
 std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
                                              const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
                                              const RunContext& context) {
   constexpr double kBetter = 0.02;
   constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
+  constexpr double kBeyondDoubt = 0.12, kMany = 30;
   if (!options.improve || !planned.guides.empty()) return std::nullopt;
   FirstPass roomy{with_room_for_shapes(planned, options.symmetry.planes, context), {}};
-  if (roomy.plan.given_way - planned.given_way < std::max(kFewest, kWorthATrial * planned.quads)) return std::nullopt;
+  const int crowding = roomy.plan.given_way - planned.given_way;
+  if (crowding < std::max(kFewest, kWorthATrial * planned.quads)) return std::nullopt;
   try {
+    if (crowding > std::max(kMany, kBeyondDoubt * planned.quads)) {
+      roomy.result =
+          run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, context.in_stage(context.stage, 0, 0.9));
+      return roomy;
+    }
     const RunContext with = context.in_stage(context.stage, 0, 0.45), without = context.in_stage(context.stage, 0.45, 0.9);
     FirstPass full{planned, run_pass(planned, whole, wishes, guides, options, kSettings[0], clock, with)};
     roomy.result = run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, without);
