@@ -7,7 +7,7 @@
 
 namespace hybrid_quad {
 
-/// Where mending failed: quads, known by the shapes of all quads within a few rings. Nothing else decides how it ends, so it
+/// Where mending, or raising shapes, failed: quads, known by the shapes of all quads within a few rings. Nothing else decides how it ends, so it
 /// need not be tried there again, in this mesh or in one that differs from it elsewhere.
 class FutileMending {
  public:

@@ -36,6 +36,9 @@ bool squares_fail(const TriangleMesh& mesh, const SurfaceIndex& whole, double ed
   return failed > kMuch * kSamples;
 }
 
+/// Side of a square with the area that a quad gets.
+double usual_edge(const ComponentPlan& plan) { return std::sqrt(plan.mesh.total_area() / plan.quads); }
+
 /// What quads have to agree with is no more than what squares of their size do. Else all of them would count as flawed, and would
 /// be changed for nothing.
 Agreement most_that_squares_pass(const TriangleMesh& mesh, const SurfaceIndex& whole, double edge) {
@@ -51,12 +54,11 @@ Agreement most_that_squares_pass(const TriangleMesh& mesh, const SurfaceIndex& w
 Agreement least_agreement(const SurfaceIndex& whole) { return {kEnough * whole.mesh().total_area(), true}; }
 
 Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const RemeshOptions& options)
-    : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)),
-      futile_shapes_(std::sqrt(plan.mesh.total_area() / plan.quads)) {
+    : plan_(plan), whole_(whole), asked_(options), guides_(guides_on(wishes, plan.mesh)), futile_shapes_(usual_edge(plan)) {
   constexpr double kAspectOfSizes = 0.45;  // nearer to squares, edges are nearer to the lengths asked for
   constexpr double kWeightOfSizes = 3;
   improve_.fit = options.fit;
-  improve_.target_length = std::sqrt(plan.mesh.total_area() / plan.quads);
+  improve_.target_length = usual_edge(plan);
   improve_.agreement = most_that_squares_pass(plan.mesh, whole, improve_.target_length);
   improve_.least_agreement = least_agreement(whole);
   improve_.guides = &guides_;
