@@ -242,7 +242,7 @@ GuidePull Smoother::guide_pull(int v, double size) const {
   if (guides_.empty()) return sum;
   const Vector3 own = guides_.at(v), normal = piece_.input.normal(piece_.face[v]);
   if (own.isZero(0)) return sum;
-  const auto add_edge = [&](int other, double share) {
+  const auto add_edge = [&](int other) {
     const Vector3 edge = piece_.mesh.positions[other] - piece_.mesh.positions[v];
     // The guide in the middle of the edge, or an edge would be pulled to the inside of every bend.
     const auto along_edge = [&](const Vector3& guide) {
@@ -253,17 +253,12 @@ GuidePull Smoother::guide_pull(int v, double size) const {
     Vector3 along = along_edge(own);
     if (piece_.mesh.is_free(other) && piece_.face[other] >= 0) along = 0.5 * (along + along_edge(guides_.at(other)));
     const Vector3 across = normal.cross(along);  // as long as the guide is strong
-    const double weight = share * options_.guide_weight / (size * size);
+    const double weight = options_.guide_weight / (size * size);
     sum.pull += weight * edge.dot(across) * across;
     sum.stiffness += weight * across * across.transpose();
   };
-  constexpr double kShareOnBoundary = 0.5;
-  for (const int q : piece_.mesh.quads_at(v)) {
-    const int k = piece_.mesh.corner_of(q, v);
-    const EditMesh::Quad& corners = piece_.mesh.quad(q);
-    add_edge(corners[(k + 1) & 3], piece_.mesh.across(q, k) < 0 ? kShareOnBoundary : 1);
-    if (piece_.mesh.across(q, (k + 3) & 3) < 0) add_edge(corners[(k + 3) & 3], kShareOnBoundary);
-  }
+  // Around an inner vertex, every edge is the first one there of one quad.
+  for (const int q : piece_.mesh.quads_at(v)) add_edge(piece_.mesh.quad(q)[(piece_.mesh.corner_of(q, v) + 1) & 3]);
   return sum;
 }
 

@@ -417,6 +417,7 @@ SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
 const TriangleMesh& SurfaceIndex::mesh() const { return tree_->mesh; }
+const Vector3& SurfaceIndex::normal(int face) const { return tree_->normal[face]; }
 
 SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const {
   const Tree& tree = *tree_;

@@ -51,6 +51,7 @@ class SurfaceIndex {
   bool any_in_box(const Vector3& low, const Vector3& high, const std::function<bool(int)>& visit) const;
 
   const TriangleMesh& mesh() const;
+  const Vector3& normal(int face) const;  ///< of length 1
 
  private:
   struct Tree;

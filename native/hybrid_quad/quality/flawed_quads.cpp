@@ -44,6 +44,7 @@ double area_in_circle(const Eigen::Vector2d& p, const Eigen::Vector2d& q, double
 
 /// Area of a triangle inside a ball. \param normal  of the triangle, of length 1
 double area_in_ball(const std::array<Vector3, 3>& triangle, const Vector3& normal, const Ball& ball) {
+  if (!ball.holds(nearest_on_triangle(ball.centre, triangle[0], triangle[1], triangle[2]))) return 0;
   const double height = normal.dot(triangle[0] - ball.centre);
   const double radius2 = ball.radius * ball.radius - height * height;
   if (!(radius2 > 0)) return 0;
@@ -101,7 +102,7 @@ bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, c
   const Vector3 reach = Vector3::Constant(ball.radius);
   double along = 0, against = 0;
   surface.any_in_box(ball.centre - reach, ball.centre + reach, [&](int f) {
-    (mesh.normal(f).dot(normal) < kAgrees ? against : along) += area_in_ball(corners_of(mesh, f), mesh.normal(f), ball);
+    (surface.normal(f).dot(normal) < kAgrees ? against : along) += area_in_ball(corners_of(mesh, f), surface.normal(f), ball);
     return false;
   });
   return along >= kAsMuch * against;
@@ -115,10 +116,10 @@ bool agrees_in(const SurfaceIndex& surface, const Ball& ball, const Vector3& nor
   const Vector3 reach = Vector3::Constant(ball.radius);
   double area = 0;
   return surface.any_in_box(ball.centre - reach, ball.centre + reach, [&](int f) {
-    if (mesh.normal(f).dot(normal) < kAgrees) return false;
+    if (surface.normal(f).dot(normal) < kAgrees) return false;
     const std::array<Vector3, 3> p = corners_of(mesh, f);
     if (ball.holds((p[0] + p[1] + p[2]) / 3)) return true;
-    area += area_in_ball(p, mesh.normal(f), ball);
+    area += area_in_ball(p, surface.normal(f), ball);
     return area >= enough_area;
   });
 }
