@@ -139,7 +139,13 @@ MendReport mend_flawed(Workpiece& piece, Smoother& smoother, const SurfaceIndex&
   FutileMending futile(piece.h);
   MendReport report;
   report.mended = mend_in_rounds(piece, mender, context, nullptr, futile);
-  report.placed = in_rounds(piece, mender, context, nullptr, [&](int q) { return mender.is_poor(q) && mender.find_places(q); });
+  FutileMending without_better_places(piece.h);
+  report.placed = in_rounds(piece, mender, context, nullptr, [&](int q) {
+    if (!mender.is_poor(q) || without_better_places.knows(piece, q)) return false;
+    const bool placed = mender.find_places(q);
+    if (!placed) without_better_places.remember(piece, q);
+    return placed;
+  });
   return report;
 }
 

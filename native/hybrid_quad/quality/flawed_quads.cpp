@@ -108,6 +108,13 @@ bool coincides(const SurfaceIndex& surface, const Ball& ball, double distance, c
   return along >= kAsMuch * against;
 }
 
+/// Whether a face agrees with a normal and has that much area in a ball, or its middle.
+bool agrees_enough(const SurfaceIndex& surface, int f, const Ball& ball, const Vector3& normal, double enough_area) {
+  if (surface.normal(f).dot(normal) < kAgrees) return false;
+  const std::array<Vector3, 3> p = corners_of(surface.mesh(), f);
+  return ball.holds((p[0] + p[1] + p[2]) / 3) || area_in_ball(p, surface.normal(f), ball) > std::max(enough_area, 0.0);
+}
+
 /// Whether the faces in a ball that agree with a normal have that much area there, or one of them has its middle there.
 bool agrees_in(const SurfaceIndex& surface, const Ball& ball, const Vector3& normal, double enough_area, Lookup& lookup) {
   if (!has_any(surface, ball.centre, those_that_agree(ball, normal), lookup)) return false;
@@ -165,11 +172,12 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   }
   Lookup unknown;
   Lookup& known = lookup ? *lookup : unknown;
-  // A face that points against the quad and is as near as the nearest one is no farther than any: mostly there is none, and one
-  // search for both is enough.
+  // Mostly the face below agrees, and is enough of what is looked for below. A face that points against the quad and is as near as the nearest
+  // one is no farther than any: mostly there is none, and one search for both is enough.
   if (known.face >= 0) {
     const SurfacePoint walked = surface.walk(centre, known.face);
     known.face = walked.face;
+    if (agrees_enough(surface, walked.face, {centre, kReach * size}, normal, agreement.area)) return false;
     if (walked.squared_distance < size * size && !points_against(surface, centre, walked, normal, kTouches * size, known)) return false;
   }
   SurfaceIndex::Filter filter;
