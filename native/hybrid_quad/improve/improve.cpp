@@ -81,14 +81,16 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   }
   if (options.rings == nullptr) spread_along_bends(piece, smoother, context);
   if (options.fit) fit_to_input(piece, smoother, context);
-  report.inverted_after = untangle(piece, smoother, context);
+  const FutileMending nowhere(piece.h);
+  FutileUntangling futile{nowhere, nowhere, nowhere, nowhere};
+  report.inverted_after = untangle(piece, smoother, context, futile);
   // What relaxing alone can't untangle may come free with other neighbours.
   for (int round = 0; round < kLastRounds && report.inverted_after > 0 && options.edit_connectivity; ++round) {
     const int moves = improve_shapes(piece, smoother, context);
     if (moves == 0) break;
     report.connectivity_moves += moves;
     const int before = report.inverted_after;
-    report.inverted_after = untangle(piece, smoother, context);
+    report.inverted_after = untangle(piece, smoother, context, futile);
     if (report.inverted_after > kManyInverted && report.inverted_after > kWorthwhile * before) break;
   }
   if (options.rings == nullptr) {

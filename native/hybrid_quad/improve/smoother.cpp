@@ -48,33 +48,37 @@ void Smoother::for_each(const std::vector<int>& list, int chunk, const Work& wor
 void Smoother::update_reference(int q) {
   const auto& v = piece_.mesh.quad(q);
   const auto& p = piece_.mesh.positions;
-  const TriangleMesh& input = piece_.input;
-  const Vector3 centre = 0.25 * (p[v[0]] + p[v[1]] + p[v[2]] + p[v[3]]);
-  ReferencePlace place{centre, {-1, -1, -1, -1}};
+  ReferencePlace place{0.25 * (p[v[0]] + p[v[1]] + p[v[2]] + p[v[3]]), {-1, -1, -1, -1}};
   for (int i = 0; i < 4; ++i)
     if (piece_.mesh.is_free(v[i])) place.face[i] = piece_.face[v[i]];
-  if (place == reference_place_[q]) return;
+  auto& [latest, other] = references_[q];
+  if (place == latest.place) return;
+  std::swap(latest, other);
+  if (!(place == latest.place)) latest = reference_at(place, q);
+  centre_face_[q] = latest.face;
+  frames_[q].reference = latest.normal;
+}
+
+Smoother::Reference Smoother::reference_at(const ReferencePlace& place, int q) const {
   // Walks from the corners stay on their sheet, however near another one is.
   Vector3 around = Vector3::Zero();
   SurfacePoint nearest;
   for (int i = 0; i < 4; ++i) {
     if (place.face[i] < 0) continue;
-    around += input.normal(place.face[i]);
+    around += piece_.input.normal(place.face[i]);
     if (std::find(place.face.begin(), place.face.begin() + i, place.face[i]) != place.face.begin() + i) continue;
-    const SurfacePoint walked = piece_.walk(centre, place.face[i]);
+    const SurfacePoint walked = piece_.walk(place.centre, place.face[i]);
     if (nearest.face < 0 || walked.squared_distance < nearest.squared_distance) nearest = walked;
   }
   if (nearest.face < 0) {
     SurfaceIndex::Filter filter;
     filter.region = piece_.region_filter(piece_.region[q]);
     filter.hint = centre_face_[q];
-    nearest = piece_.index.nearest(centre, filter);
-    if (nearest.face < 0) nearest = piece_.index.nearest(centre);
+    nearest = piece_.index.nearest(place.centre, filter);
+    if (nearest.face < 0) nearest = piece_.index.nearest(place.centre);
   }
-  centre_face_[q] = nearest.face;
-  const Vector3 below = nearest.face >= 0 ? input.normal(nearest.face) : Vector3(0, 0, 1);
-  frames_[q].reference = unit_or(around + 2 * below, below);
-  reference_place_[q] = place;
+  const Vector3 below = nearest.face >= 0 ? piece_.input.normal(nearest.face) : Vector3(0, 0, 1);
+  return {place, unit_or(around + 2 * below, below), nearest.face};
 }
 
 void Smoother::update_shape(int q) {
@@ -120,7 +124,7 @@ void Smoother::update_frames(const std::vector<int>& quads, bool with_references
   frames_.resize(piece_.mesh.quad_count());
   own_area_.resize(piece_.mesh.quad_count(), piece_.h * piece_.h);
   centre_face_.resize(piece_.mesh.quad_count(), -1);
-  reference_place_.resize(piece_.mesh.quad_count());
+  references_.resize(piece_.mesh.quad_count());
   for_each(quads, with_references ? kMoves : kSums, [&](int q) {
     if (!piece_.mesh.alive(q)) return;
     if (with_references) update_reference(q);

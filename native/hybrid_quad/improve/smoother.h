@@ -57,9 +57,15 @@ class Smoother {
     /// Not where no corner has a face: there is more then that a reference depends on.
     bool operator==(const ReferencePlace& other) const { return has_face() && face == other.face && centre == other.centre; }
   };
+  struct Reference {
+    ReferencePlace place;
+    Vector3 normal = Vector3(0, 0, 1);
+    int face = -1;  ///< of the input, below the middle
+  };
   template <class Work>
   void for_each(const std::vector<int>& list, int chunk, const Work& work) const;
   void update_reference(int q);
+  Reference reference_at(const ReferencePlace& place, int q) const;
   void update_shape(int q);
   void update_area(int q);
   bool is_tangled() const;
@@ -78,7 +84,7 @@ class Smoother {
   AskedAreas asked_areas_;
   std::vector<double> own_area_;
   std::vector<int> centre_face_;
-  std::vector<ReferencePlace> reference_place_;  ///< of the references as they are
+  std::vector<std::array<Reference, 2>> references_;  ///< #Q: the latest first; a trial that fails goes back to where it began
   VertexGuides guides_;
 };
 

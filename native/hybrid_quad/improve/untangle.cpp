@@ -1,7 +1,9 @@
 #include "hybrid_quad/improve/untangle.h"
 
 #include <algorithm>
+#include <array>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/quality/quality.h"
 
 namespace hybrid_quad {
@@ -40,8 +42,24 @@ double badness(const Workpiece& piece, const Smoother& smoother, const std::vect
   return sum;
 }
 
-/// Relaxes `rings` rings around q, if that makes them less bad. \returns number of vertices relaxed
-int untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
+bool looks_against_input(const Workpiece& piece, int q) {
+  std::array<Vector3, 4> corners;
+  Lookup lookup;
+  for (int i = 0; i < 4; ++i) {
+    const int v = piece.mesh.quad(q)[i];
+    corners[i] = piece.mesh.positions[v];
+    lookup.face = std::max(lookup.face, piece.face[v]);
+  }
+  return is_inverted(corners, piece.index, {}, &lookup);
+}
+
+struct PlaceReport {
+  int relaxed = 0;  ///< vertices
+  bool is_better = false;
+};
+
+/// Relaxes `rings` rings around q, if that makes them less bad.
+PlaceReport untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
   constexpr double kRegularisation[] = {0.5, 0.2, 0.07, 0.02, 1e-3};
   constexpr int kSweeps = 4;
   std::vector<int> inside = vertices_of(piece.mesh, {q});
@@ -65,43 +83,46 @@ int untangle_place(Workpiece& piece, Smoother& smoother, int q, int rings) {
     }
   for (const double eps : kRegularisation) smoother.relax(inside, kSweeps, eps);
   smoother.update_frames(quads, true);
-  if (badness(piece, smoother, quads) < before) return static_cast<int>(inside.size());
+  const int relaxed = static_cast<int>(inside.size());
+  if (badness(piece, smoother, quads) < before) return {relaxed, true};
   for (std::size_t i = 0; i < inside.size(); ++i) {
     piece.mesh.positions[inside[i]] = positions[i];
     piece.face[inside[i]] = faces[i];
     piece.arc[inside[i]] = arcs[i];
   }
   smoother.update_frames(quads, true);
-  return static_cast<int>(inside.size());
+  return {relaxed, false};
 }
 
 }  // namespace
 
 std::vector<int> tangled_quads(const Workpiece& piece, int threads) {
-  QuadMesh mesh;
-  mesh.positions = piece.mesh.positions;
-  std::vector<int> id;
-  for (int q = 0; q < piece.mesh.quad_count(); ++q) {
-    if (!piece.mesh.alive(q)) continue;
-    mesh.quads.push_back(piece.mesh.quad(q));
-    id.push_back(q);
-  }
+  constexpr int kChunk = 256;
+  const int count = piece.mesh.quad_count();
+  std::vector<char> is_tangled(count, 0);
+  parallel_for((count + kChunk - 1) / kChunk, threads, [&](int c) {
+    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q)
+      is_tangled[q] = piece.mesh.alive(q) && (own_quality(piece.mesh, q) <= 0 || looks_against_input(piece, q));
+  });
   std::vector<int> tangled;
-  for (const int q : inverted_quads(mesh, piece.index, {}, threads)) tangled.push_back(id[q]);
-  for (const int q : id)
-    if (own_quality(piece.mesh, q) <= 0) tangled.push_back(q);
-  return sorted_unique(std::move(tangled));
+  for (int q = 0; q < count; ++q)
+    if (is_tangled[q]) tangled.push_back(q);
+  return tangled;
 }
 
-int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context) {
-  constexpr int kRounds = 4, kEffort = 1, kLeastEffort = 600;
+int untangle(Workpiece& piece, Smoother& smoother, const RunContext& context, FutileUntangling& futile) {
+  constexpr int kEffort = 1, kLeastEffort = 600;
   // Vertices to relax in all places together: where the whole mesh is bad, no place can be mended alone.
   int effort = kLeastEffort + kEffort * piece.mesh.vertex_count();
   std::vector<int> tangled = tangled_quads(piece, context.threads);
-  for (int round = 0; round < kRounds && !tangled.empty(); ++round) {
+  const int rounds = static_cast<int>(futile.size());
+  for (int round = 0; round < rounds && !tangled.empty(); ++round) {
     for (const int q : tangled) {
-      context.checkpoint(static_cast<double>(round) / kRounds);
-      if (effort > 0) effort -= untangle_place(piece, smoother, q, 1 + round);
+      context.checkpoint(static_cast<double>(round) / rounds);
+      if (effort <= 0 || futile[round].knows(piece, q)) continue;
+      const PlaceReport place = untangle_place(piece, smoother, q, 1 + round);
+      effort -= place.relaxed;
+      if (!place.is_better) futile[round].remember(piece, q);
     }
     tangled = tangled_quads(piece, context.threads);
   }

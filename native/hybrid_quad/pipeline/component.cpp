@@ -115,13 +115,13 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
                                              const RunContext& context) {
   constexpr double kBetter = 0.02;
   constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
-  constexpr double kBeyondDoubt = 0.12, kMany = 30;
+  constexpr double kBeyondDoubt = 0.12, kVeryMany = 30;
   if (!options.improve || !planned.guides.empty()) return std::nullopt;
   FirstPass roomy{with_room_for_shapes(planned, options.symmetry.planes, context), {}};
   const int crowding = roomy.plan.given_way - planned.given_way;
   if (crowding < std::max(kFewest, kWorthATrial * planned.quads)) return std::nullopt;
   try {
-    if (crowding > std::max(kMany, kBeyondDoubt * planned.quads)) {
+    if (crowding > std::max(kVeryMany, kBeyondDoubt * planned.quads)) {
       roomy.result =
           run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, context.in_stage(context.stage, 0, 0.9));
       return roomy;
