@@ -1,9 +1,10 @@
 #include "hybrid_quad/frame_field/cross_relaxation.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace hybrid_quad {
 
@@ -12,19 +13,22 @@ namespace {
 constexpr double kTiny = 1e-300;
 
 /// Minimises without |z| = 1: a linear system where something pulls, else the lowest eigenvector.
-std::vector<Complex> solved_densely(const CrossSystem& system, std::uint64_t seed) {
+std::vector<Complex> solved_linearly(const CrossSystem& system, std::uint64_t seed) {
   constexpr int kInverseIterations = 20;
   const int n = system.size();
-  Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Zero(n, n);
   double trace = 0;
   for (const double d : system.diagonal) trace += d;
   const double shift = 1e-9 * trace / n + kTiny;
-  for (int i = 0; i < n; ++i) matrix(i, i) = system.diagonal[i] + shift;
+  std::vector<Eigen::Triplet<Complex>> entries;
+  entries.reserve(n + system.links.size());
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, system.diagonal[i] + shift);
   for (const CrossLink& link : system.links) {
-    matrix(link.to, link.from) -= link.weight;
-    matrix(link.from, link.to) -= std::conj(link.weight);
+    const bool is_below = link.to > link.from;
+    entries.emplace_back(is_below ? link.to : link.from, is_below ? link.from : link.to, is_below ? -link.weight : -std::conj(link.weight));
   }
-  const Eigen::LDLT<Eigen::MatrixXcd> factor(matrix);
+  Eigen::SparseMatrix<Complex> below(n, n);
+  below.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Complex>, Eigen::Lower> factor(below);
   Eigen::VectorXcd x(n);
   bool pulled = false;
   for (int i = 0; i < n; ++i) {
@@ -73,13 +77,8 @@ int sweeps_at(int sweeps, std::size_t level) {
 
 std::vector<Complex> relax_crosses(const std::vector<CrossLevel>& levels, int sweeps, const RunContext& context) {
   if (levels[0].system.size() == 0) return {};
-  constexpr int kLargestDense = 1500;
   const CrossLevel& coarsest = levels.back();
-  std::vector<Complex> values = coarsest.system.source;
-  if (coarsest.system.size() <= kLargestDense)
-    values = solved_densely(coarsest.system, context.seed);
-  else
-    normalise_crosses(values, context.seed);
+  std::vector<Complex> values = solved_linearly(coarsest.system, context.seed);
   sweep(coarsest, 20 * sweeps, values, context);
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
     values = prolonged(levels[l], values);
