@@ -24,7 +24,8 @@ std::vector<Complex> solved_linearly(const CrossSystem& system, std::uint64_t se
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, system.diagonal[i] + shift);
   for (const CrossLink& link : system.links) {
     const bool is_below = link.to > link.from;
-    entries.emplace_back(is_below ? link.to : link.from, is_below ? link.from : link.to, is_below ? -link.weight : -std::conj(link.weight));
+    entries.emplace_back(is_below ? link.to : link.from, is_below ? link.from : link.to,
+                         is_below ? -link.weight : -std::conj(link.weight));
   }
   Eigen::SparseMatrix<Complex> below(n, n);
   below.setFromTriplets(entries.begin(), entries.end());

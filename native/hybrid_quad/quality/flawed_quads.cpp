@@ -141,14 +141,15 @@ double least_area_of(const QuadMesh& mesh) {
   return kLeastArea * mean * mean;
 }
 
-/// The quads for which test(q) holds, ascending.
+/// The quads for which test(q, lookup) holds, ascending. Quads in turn are mostly neighbours: where one was looked up tells where the next one is.
 template <class Test>
 std::vector<int> quads_that(const QuadMesh& mesh, int threads, const Test& test) {
   constexpr int kChunk = 256;
   const int count = static_cast<int>(mesh.quads.size());
   std::vector<char> holds(count, 0);
   parallel_for((count + kChunk - 1) / kChunk, threads, [&](int c) {
-    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q) holds[q] = test(q);
+    Lookup lookup;
+    for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q) holds[q] = test(q, lookup);
   });
   std::vector<int> found;
   for (int q = 0; q < count; ++q)
@@ -193,7 +194,8 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
-  return quads_that(mesh, threads, [&](int q) { return is_inverted(corners_of(mesh, q), surface, agreement); });
+  return quads_that(mesh, threads,
+                    [&](int q, Lookup& lookup) { return is_inverted(corners_of(mesh, q), surface, agreement, &lookup); });
 }
 
 bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const SurfaceIndex& surface, const Agreement& agreement,
@@ -203,7 +205,9 @@ bool is_flawed(const std::array<Vector3, 4>& corners, double least_area, const S
 
 std::vector<int> flawed_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
   const double least_area = least_area_of(mesh);
-  return quads_that(mesh, threads, [&](int q) { return is_flawed(corners_of(mesh, q), least_area, surface, agreement); });
+  return quads_that(mesh, threads, [&](int q, Lookup& lookup) {
+    return is_flawed(corners_of(mesh, q), least_area, surface, agreement, &lookup);
+  });
 }
 
 std::vector<int> flawed_among(const std::vector<int>& candidates, const QuadMesh& mesh, const SurfaceIndex& surface,

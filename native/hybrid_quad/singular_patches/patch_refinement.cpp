@@ -21,7 +21,7 @@ std::vector<char> border_vertices(const PatchTriangles& patch) {
 }
 
 double step_in_quads(const std::array<double, 2>& s) {  // u = (alpha + beta) / 2 pi, v = (alpha - beta) / 2 pi
-  return std::hypot(s[0] + s[1], s[0] - s[1]) / (2 * kPi);
+  return std::sqrt(2 * (s[0] * s[0] + s[1] * s[1])) / (2 * kPi);
 }
 
 PhasePair advanced(const PhasePair& p, const std::array<double, 2>& step, double part) {
@@ -194,9 +194,10 @@ void refine_patch(PatchTriangles& patch, double longest, double target_length, c
     const std::vector<char> border = border_vertices(patch);
     std::vector<char> marked(patch.opposite.size(), 0);
     bool any = false;
-    for (std::size_t h = 0; h < patch.opposite.size(); ++h) {
+    for (int h = 0; h < static_cast<int>(patch.opposite.size()); ++h) {
       const int a = patch.faces[h / 3][h % 3], b = patch.faces[h / 3][(h % 3 + 1) % 3];
       const int o = patch.opposite[h];
+      if (o >= 0 && o < h) continue;  // both are marked together
       const double length = (patch.positions[a] - patch.positions[b]).norm();
       double quads = step_in_quads(patch.step[h]);
       if (o >= 0) quads = std::max(quads, step_in_quads(patch.step[o]));
