@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -113,6 +115,37 @@ TEST(InvertedQuads, TheEdgeOfASheetInThePlaceOfAnotherIsNoExcuse) {
   constexpr double kEnough = 1e-3;
   EXPECT_TRUE(is_inverted(quad, narrow, {kEnough, true}));
   EXPECT_FALSE(is_inverted(quad, wide, {kEnough, true}));
+}
+
+TEST(InvertedQuads, WhereTheSearchBeginsMakesNoDifference) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (const TriangleMesh& surface : {test::torus(24, 12), test::box(6, Vector3(1, 1, 0.02))}) {
+    const SurfaceIndex index(surface, {});
+    const double area = surface.total_area();
+    std::uniform_int_distribution<int> any_face(0, surface.face_count() - 1);
+    std::array<int, 2> counts{0, 0};
+    for (int i = 0; i < 400; ++i) {
+      // Near a vertex, and turned any way.
+      const Vector3 near = surface.position(surface.face(any_face(random))[0]);
+      std::array<Vector3, 4> quad;
+      for (int k = 0; k < 4; ++k) quad[k] = near + 0.02 * Vector3(u(random), u(random), u(random));
+      const double size = 0.2 * (1.1 + u(random));
+      const Vector3 x = size * Vector3(u(random), u(random), u(random)), y = size * Vector3(u(random), u(random), u(random));
+      quad[1] += x;
+      quad[2] += x + y;
+      quad[3] += y;
+      for (const Agreement& agreement : {Agreement{}, Agreement{1e-3 * area}, Agreement{1e-2 * area, true}}) {
+        const bool expected = is_inverted(quad, index, agreement);
+        ++counts[expected];
+        for (int start = 0; start < 4; ++start) {
+          Lookup lookup{any_face(random)};
+          EXPECT_EQ(is_inverted(quad, index, agreement, &lookup), expected);
+        }
+      }
+    }
+    EXPECT_GT(std::min(counts[0], counts[1]), 100) << "both answers occur";
+  }
 }
 
 TEST(FlawedQuads, WhoAsksForMoreFindsMore) {
