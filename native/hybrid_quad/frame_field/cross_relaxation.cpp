@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kTiny = 1e-300;
 
-/// Minimises without |z| = 1: a linear system where something pulls, else the lowest eigenvector.
+/// Minimises without |z| = 1: a linear system where something pulls, else the lowest eigenvector. Only a start for the sweeps: what pulls, or
+/// scattered crosses, will do where rounding leaves no pivot.
 std::vector<Complex> solved_linearly(const CrossSystem& system, std::uint64_t seed) {
   constexpr int kInverseIterations = 20;
   const int n = system.size();
@@ -36,9 +37,10 @@ std::vector<Complex> solved_linearly(const CrossSystem& system, std::uint64_t se
     x[i] = system.source[i];
     pulled = pulled || x[i] != Complex(0, 0);
   }
-  if (pulled) {
+  const bool is_factorized = factor.info() == Eigen::Success;
+  if (is_factorized && pulled) {
     x = factor.solve(x).eval();
-  } else {
+  } else if (is_factorized) {
     for (int i = 0; i < n; ++i) x[i] = scattered_cross(i, seed);
     for (int step = 0; step < kInverseIterations; ++step) {
       x = factor.solve(x).eval();

@@ -7,8 +7,9 @@
 
 namespace hybrid_quad {
 
-/// Where mending, or raising shapes, failed: quads, known by the shapes of all quads within a few rings. Nothing else decides how it ends, so it
-/// need not be tried there again, in this mesh or in one that differs from it elsewhere.
+/// Where mending, raising shapes, looking for places or untangling failed: quads, known by the shapes of all quads within a few rings. Nothing
+/// else decides how it ends (but for untangling four rings, which sees one more), so it need not be tried there again, in this mesh or in one that
+/// differs from it elsewhere.
 class FutileMending {
  public:
   /// \param edge  mean edge length: a millionth of it makes no difference

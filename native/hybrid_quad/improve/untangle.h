@@ -13,7 +13,7 @@ namespace hybrid_quad {
 /// Quads that are folded (scaled Jacobian <= 0) or look against the input all around them (inverted_quads). Ascending.
 std::vector<int> tangled_quads(const Workpiece& piece, int threads = 1);
 
-/// Where relaxing one ring failed, two rings, and so on.
+/// Where relaxing one ring failed, two rings, and so on: as many rounds as there are entries.
 using FutileUntangling = std::array<FutileMending, 4>;
 
 /// Untangles what is left, place by place: puts the free vertices around back on the surface, then relaxes rings that grow
