@@ -85,6 +85,7 @@ class Outcome:
     report: dict[str, Any] = field(default_factory=dict)
     judgement: dict[str, Any] = field(default_factory=dict)
     variant: str = "default"
+    threads: int = 1
 
     @property
     def is_good(self) -> bool:
@@ -120,7 +121,7 @@ def run_and_judge(
     # By the clock the run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
     measured = measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb, limits.cpu_seconds)
-    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant)
+    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant, threads=threads)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
         outcome.report = json.loads(report.read_text())

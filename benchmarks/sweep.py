@@ -37,17 +37,21 @@ def main() -> int:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
         return 2
     done = {} if arguments.fresh else read_results(out / "results.jsonl", build)
-    missing = [run for run in runs if run.name not in done]
+    missing = [run for run in runs if run.name not in done or done[run.name].status in arguments.again]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
 
     def limits(run: Run) -> Limits:
         seconds = arguments.time_limit or max(1.0, run.quads / 10000) * SECONDS_FOR_10000
+        if arguments.threads > 1:
+            return Limits(seconds=seconds, cpu_seconds=arguments.threads * seconds, memory_mb=arguments.memory_mb)
         return Limits(seconds=CLOCK * seconds, cpu_seconds=seconds, memory_mb=arguments.memory_mb)
 
     judge = None if arguments.no_judge else arguments.judge
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {
-            pool.submit(lambda run: (run, run_and_judge(_with_wishes(run, out), out, limits(run), judge)), run)
+            pool.submit(
+                lambda run: (run, run_and_judge(_with_wishes(run, out), out, limits(run), judge, arguments.threads)), run
+            )
             for run in missing
         }
         finished = 0
@@ -98,6 +102,20 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--clean-only", action="store_true", help="only models that are manifold surfaces")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "sweep")
     parser.add_argument("--jobs", type=int, default=1, help="runs at once (default 1: honest timings)")
+    parser.add_argument(
+        "--threads",
+        type=int,
+        default=1,
+        metavar="N",
+        help="of a run (default 1); with more the limit is one of the clock, as for a user who waits",
+    )
+    parser.add_argument(
+        "--again",
+        nargs="+",
+        default=[],
+        metavar="STATUS",
+        help="make runs that ended so once more, as those over the limit (timeout) with more threads",
+    )
     parser.add_argument(
         "--time-limit",
         type=float,

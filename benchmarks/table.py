@@ -57,6 +57,7 @@ COLUMNS: Sequence[Column] = (
     ("singular area %", ".1f", _singular_area),
     ("patches", "d", lambda o: o.report.get("patches", {}).get("count")),
     ("fills", "d", lambda o: o.report.get("patches", {}).get("combinatorial")),
+    ("threads", "d", lambda o: o.threads),
     ("seconds", ".2f", lambda o: o.seconds),
     ("CPU s", ".2f", lambda o: o.cpu_seconds),
     ("peak MB", ".0f", lambda o: o.peak_mb),

@@ -55,6 +55,9 @@ def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     slow = sweep(root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--time-limit", 1)
     assert (slow.returncode, rows(tmp_path / "slow")[0]["valid"]) == (1, "timeout")
     assert "1 s of the processor" in rows(tmp_path / "slow")[0]["message"]
+    again = sweep(root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--again", "timeout", "--threads", 2)
+    assert "1 runs, 1 to do" in again.stdout
+    assert [(row["valid"], row["threads"]) for row in rows(tmp_path / "slow")] == [("yes", "2")]
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 100)
     assert large.returncode == 1
     assert rows(tmp_path / "large")[0]["valid"] == "memory_limit"
