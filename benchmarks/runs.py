@@ -16,7 +16,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -98,7 +98,13 @@ class Outcome:
 
 
 def run_and_judge(
-    run: Run, folder: Path, limits: Limits, judge: Path | None = JUDGE, threads: int = 1, keep_meshes: bool = True
+    run: Run,
+    folder: Path,
+    limits: Limits,
+    judge: Path | None = JUDGE,
+    threads: int = 1,
+    keep_meshes: bool = True,
+    environment: Mapping[str, str] | None = None,
 ) -> Outcome:
     """Remeshes one model in a process of its own and judges what comes out.
 
@@ -112,6 +118,8 @@ def run_and_judge(
         Threads of the run.
     keep_meshes : bool
         Leave the result's mesh in the folder.
+    environment : mapping or None
+        Variables of the run, in place of this process's own.
     """
     out, report = folder / f"{run.name}.obj", folder / f"{run.name}.report.json"
     for old in (out, report):
@@ -120,7 +128,9 @@ def run_and_judge(
     command += [*SETTINGS[run.setting], *run.arguments, "--threads", str(threads), "--report", str(report), "--quiet"]
     # By the clock the run ends itself, and says in which stage; it is killed only if it does not.
     command += ["--time-limit", str(limits.seconds)]
-    measured = measure(command, limits.seconds + limits.grace_seconds, limits.memory_mb, limits.cpu_seconds)
+    measured = measure(
+        command, limits.seconds + limits.grace_seconds, limits.memory_mb, limits.cpu_seconds, environment
+    )
     outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant, threads=threads)
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
@@ -176,17 +186,30 @@ class Measured:
     peak_mb: float
 
 
-def measure(command: list[str], seconds: float, memory_mb: int, cpu_seconds: float | None = None) -> Measured:
-    """Runs a program with limits, and takes the system's account of it."""
+def measure(
+    command: list[str],
+    seconds: float,
+    memory_mb: int,
+    cpu_seconds: float | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Measured:
+    """Runs a program with limits (`memory_mb` 0: none), and takes the system's account of it."""
 
     def limit() -> None:
-        resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
+        if memory_mb > 0:
+            resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
         if cpu_seconds is not None:
             resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(cpu_seconds), math.ceil(cpu_seconds) + 5))
 
     begin = time.monotonic()
     with subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", preexec_fn=limit
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        preexec_fn=limit,
+        env=environment,
     ) as process:
         assert process.stderr is not None
         timed_out = False

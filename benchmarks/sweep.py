@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import os
 import random
 import sys
 from collections.abc import Iterator
@@ -31,7 +32,7 @@ def main() -> int:
     arguments = _parser().parse_args()
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
-    build = build_id()
+    build = build_id(arguments.package)
     runs = _sample(list(_runs(arguments)), arguments.sample, arguments.seed)
     if not runs:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
@@ -47,10 +48,17 @@ def main() -> int:
         return Limits(seconds=CLOCK * seconds, cpu_seconds=seconds, memory_mb=arguments.memory_mb)
 
     judge = None if arguments.no_judge else arguments.judge
+    environment = _environment(arguments)
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {
             pool.submit(
-                lambda run: (run, run_and_judge(_with_wishes(run, out), out, limits(run), judge, arguments.threads)), run
+                lambda run: (
+                    run,
+                    run_and_judge(
+                        _with_wishes(run, out), out, limits(run), judge, arguments.threads, environment=environment
+                    ),
+                ),
+                run,
             )
             for run in missing
         }
@@ -122,7 +130,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         help="of the processor, for a run (default: 60 s for 10000 quads, at least 60 s; by the clock five times as many)",
     )
-    parser.add_argument("--memory-mb", type=int, default=Limits.memory_mb)
+    parser.add_argument("--memory-mb", type=int, default=Limits.memory_mb, help="for a run (default 8192); 0: no limit")
+    parser.add_argument("--package", type=Path, metavar="DIR", help="folder with the package hybrid_quad to run")
+    parser.add_argument("--preload", nargs="+", default=[], metavar="LIBRARY", help="of a sanitizer, for the runs")
     parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")
     parser.add_argument("--no-judge", action="store_true", help="only our own validation")
     parser.add_argument("--fresh", action="store_true", help="do everything again")
@@ -161,9 +171,19 @@ def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool]]:
         yield from models_of(folder)
 
 
-def build_id() -> str:
-    """Names the compiled library."""
-    return hashlib.sha256(Path(str(native.load().__file__)).read_bytes()).hexdigest()[:12]
+def build_id(package: Path | None = None) -> str:
+    """Names the compiled library, of this Python or of the package in a folder."""
+    library = Path(str(native.load().__file__))
+    if package is not None:
+        library = package / "hybrid_quad" / library.name
+    return hashlib.sha256(library.read_bytes()).hexdigest()[:12]
+
+
+def _environment(arguments: argparse.Namespace) -> dict[str, str] | None:
+    """Of the runs; none: this process's own."""
+    if arguments.package is None:
+        return None
+    return {**os.environ, "PYTHONPATH": str(arguments.package.resolve()), "LD_PRELOAD": " ".join(arguments.preload)}
 
 
 def read_results(path: Path, build: str) -> dict[str, Outcome]:

@@ -1,11 +1,14 @@
 """The sweep over models: tables, limits, and going on where it stopped."""
 
 import csv
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import hybrid_quad
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import topology
 from support import surfaces
@@ -61,6 +64,22 @@ def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 100)
     assert large.returncode == 1
     assert rows(tmp_path / "large")[0]["valid"] == "memory_limit"
+
+
+def test_what_a_sanitizer_ends_counts_as_a_crash(root, tmp_path):
+    """Runs of a package in a folder, which here ends as one built with a sanitizer does after a finding."""
+    folder = tmp_path / "package"
+    installed = Path(hybrid_quad.__file__).parent
+    shutil.copytree(installed, folder / "hybrid_quad", ignore=shutil.ignore_patterns("__pycache__"))
+    good = obj(tmp_path / "torus.obj", *surfaces.torus())
+    arguments = (good, "--quads", 100, "--settings", "sharp", "--package", folder, "--memory-mb", 0)
+    assert sweep(root, tmp_path / "good", *arguments).returncode == 0
+    (folder / "hybrid_quad" / "__main__.py").write_text('raise SystemExit("ERROR: ThreadSanitizer: data race")')
+    done = sweep(root, tmp_path / "bad", *arguments)
+    assert done.returncode == 1, done.stderr
+    assert [(row["valid"], row["message"]) for row in rows(tmp_path / "bad")] == [
+        ("crash", "ERROR: ThreadSanitizer: data race")
+    ]
 
 
 def test_a_fixed_part_of_the_whole_sweep(root, models, tmp_path):
