@@ -75,8 +75,8 @@ def as_csv(outcomes: Sequence[Outcome]) -> str:
 
 
 def as_markdown(outcomes: Sequence[Outcome]) -> str:
-    """A summary, then a row for each run."""
-    lines = [*summary(outcomes), ""]
+    """A summary, a row for each number and kind of wishes, then one for each run."""
+    lines = [*summary(outcomes), "", *_by_number(outcomes), ""]
     lines += ["| " + " | ".join(name for name, _, _ in COLUMNS) + " |"]
     lines += ["|" + "|".join("---" if kind == "" else "--:" for _, kind, _ in COLUMNS) + "|"]
     lines += ["| " + " | ".join(_cell(outcome, column) for column in COLUMNS) + " |" for outcome in outcomes]
@@ -103,6 +103,18 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
             f"- count off by more than 10 % at 1000 quads or more: {len(off)} of {len(counted)}, "
             f"{len(silent)} of them without a warning"
         )
+    return lines
+
+
+def _by_number(outcomes: Sequence[Outcome]) -> list[str]:
+    names = ("asked", "variant", "runs", "valid", "valid but for samples", "refused", "other", "CPU s, mean", "longest")
+    lines = ["| " + " | ".join(names) + " |", "|--:|---|" + "--:|" * (len(names) - 2)]
+    for quads, variant in sorted({(o.quads, o.variant) for o in outcomes}):
+        of_kind = [o for o in outcomes if (o.quads, o.variant) == (quads, variant)]
+        states = Counter(o.status if o.is_good else "other" for o in of_kind)
+        seconds = [o.cpu_seconds for o in of_kind]
+        row = [quads, variant, len(of_kind), *(states[name] for name in ("valid", "valid but for samples", "refused", "other"))]
+        lines.append(f"| {' | '.join(map(str, row))} | {sum(seconds) / len(seconds):.1f} | {max(seconds):.0f} |")
     return lines
 
 

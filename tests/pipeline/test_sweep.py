@@ -50,7 +50,9 @@ def test_a_table_of_good_and_bad_runs_made_only_once(root, tmp_path):
     more = sweep(root, out, good, "--quads", 200, "--settings", "sharp", "no_sharp")
     assert "2 runs, 1 to do" in more.stdout
     assert more.returncode == 0
-    assert (out / "sweep.md").read_text().count("| torus |") == 2
+    page = (out / "sweep.md").read_text()
+    assert page.count("| torus |") == 2
+    assert "| 200 | default | 2 | 2 | 0 | 0 | 0 |" in page
 
 
 def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
