@@ -131,7 +131,15 @@ def run_and_judge(
     measured = measure(
         command, limits.seconds + limits.grace_seconds, limits.memory_mb, limits.cpu_seconds, environment
     )
-    outcome = Outcome(run.model, run.quads, run.setting, measured.status, message=measured.message, variant=run.variant, threads=threads)
+    outcome = Outcome(
+        run.model,
+        run.quads,
+        run.setting,
+        measured.status,
+        message=measured.message,
+        variant=run.variant,
+        threads=threads,
+    )
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
         outcome.report = json.loads(report.read_text())

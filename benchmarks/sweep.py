@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import lzma
 import os
 import random
 import sys
@@ -38,6 +39,11 @@ def main() -> int:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
         return 2
     done = {} if arguments.fresh else read_results(out / "results.jsonl", build)
+    if arguments.known is not None:
+        done = {**read_results(arguments.known, build), **done}
+    if arguments.pack is not None:
+        pack_results(done, build, arguments.pack)
+        return 0
     missing = [run for run in runs if run.name not in done or done[run.name].status in arguments.again]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
 
@@ -135,6 +141,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--preload", nargs="+", default=[], metavar="LIBRARY", help="of a sanitizer, for the runs")
     parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")
     parser.add_argument("--no-judge", action="store_true", help="only our own validation")
+    parser.add_argument("--known", type=Path, metavar="FILE", help="what the same build did elsewhere, from --pack")
+    parser.add_argument(
+        "--pack", type=Path, metavar="FILE", help="write in short what is done, for --known (.jsonl.xz), and end"
+    )
     parser.add_argument("--fresh", action="store_true", help="do everything again")
     return parser
 
@@ -187,18 +197,31 @@ def _environment(arguments: argparse.Namespace) -> dict[str, str] | None:
 
 
 def read_results(path: Path, build: str) -> dict[str, Outcome]:
-    """What is done, by the names of runs, as far as this build did it."""
-    done = {}
-    if path.exists():
-        for line in path.read_text().splitlines():
-            try:
-                row = json.loads(line)
-            except ValueError:  # the last line of a sweep that was killed while it wrote
-                continue
-            name = row.pop("name")
-            if row.pop("build") == build:
-                done[name] = Outcome(**row)
+    """What is done, by the names of runs, as far as this build did it. The file may be compressed (``.xz``)."""
+    done: dict[str, Outcome] = {}
+    if not path.exists():
+        return done
+    data = path.read_bytes()
+    for line in (lzma.decompress(data) if path.suffix == ".xz" else data).splitlines():
+        try:
+            row = json.loads(line)
+        except ValueError:  # the last line of a sweep that was killed while it wrote
+            continue
+        name = row.pop("name")
+        if row.pop("build") == build:
+            done[name] = Outcome(**row)
     return done
+
+
+def pack_results(done: dict[str, Outcome], build: str, path: Path) -> None:
+    """Writes what is done; of reports what a summary needs, of judgements what failed."""
+    kept = ("quads", "field_singularities", "irregular_vertices", "code", "warnings")
+    with lzma.open(path, "wt") as file:
+        for name, outcome in sorted(done.items()):
+            row = {"build": build, "name": name, **outcome.as_json()}
+            row["report"] = {key: value for key, value in outcome.report.items() if key in kept}
+            row["judgement"] = {}
+            file.write(json.dumps(row) + "\n")
 
 
 if __name__ == "__main__":

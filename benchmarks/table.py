@@ -113,7 +113,12 @@ def _by_number(outcomes: Sequence[Outcome]) -> list[str]:
         of_kind = [o for o in outcomes if (o.quads, o.variant) == (quads, variant)]
         states = Counter(o.status if o.is_good else "other" for o in of_kind)
         seconds = [o.cpu_seconds for o in of_kind]
-        row = [quads, variant, len(of_kind), *(states[name] for name in ("valid", "valid but for samples", "refused", "other"))]
+        row = [
+            quads,
+            variant,
+            len(of_kind),
+            *(states[name] for name in ("valid", "valid but for samples", "refused", "other")),
+        ]
         lines.append(f"| {' | '.join(map(str, row))} | {sum(seconds) / len(seconds):.1f} | {max(seconds):.0f} |")
     return lines
 

@@ -47,6 +47,11 @@ def test_a_table_of_good_and_bad_runs_made_only_once(root, tmp_path):
     again = sweep(root, out, good, bad, "--quads", 200, "--settings", "sharp")
     assert "0 to do" in again.stdout
     assert rows(out) == table
+    packed = tmp_path / "packed.jsonl.xz"
+    assert sweep(root, out, good, bad, "--quads", 200, "--settings", "sharp", "--pack", packed).returncode == 0
+    elsewhere = sweep(root, tmp_path / "elsewhere", good, bad, "--quads", 200, "--settings", "sharp", "--known", packed)
+    assert "0 to do" in elsewhere.stdout
+    assert [row["quads"] for row in rows(tmp_path / "elsewhere")] == [row["quads"] for row in table]
     more = sweep(root, out, good, "--quads", 200, "--settings", "sharp", "no_sharp")
     assert "2 runs, 1 to do" in more.stdout
     assert more.returncode == 0
@@ -60,7 +65,9 @@ def test_runs_that_take_too_long_or_too_much_are_ended(root, tmp_path):
     slow = sweep(root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--time-limit", 1)
     assert (slow.returncode, rows(tmp_path / "slow")[0]["valid"]) == (1, "timeout")
     assert "1 s of the processor" in rows(tmp_path / "slow")[0]["message"]
-    again = sweep(root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--again", "timeout", "--threads", 2)
+    again = sweep(
+        root, tmp_path / "slow", big, "--quads", 50000, "--settings", "sharp", "--again", "timeout", "--threads", 2
+    )
     assert "1 runs, 1 to do" in again.stdout
     assert [(row["valid"], row["threads"]) for row in rows(tmp_path / "slow")] == [("yes", "2")]
     large = sweep(root, tmp_path / "large", big, "--quads", 8000, "--settings", "sharp", "--memory-mb", 100)
