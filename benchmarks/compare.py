@@ -23,9 +23,9 @@ from comparison import Case, Result, from_outcome, from_stored, page
 from hybrid_quad.core.mesh_arrays import surface_area
 from hybrid_quad.core.mesh_io import read_mesh
 from judging import judged
+from results import build_id
 from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, measure, run_and_judge
 from stored_peers import PEERS, QUADS, stored_results
-from sweep import build_id
 
 SCRIPTS = Path(__file__).resolve().parent / "peers"
 SHARP_DEGREES = 40.0

@@ -28,9 +28,9 @@ from hybrid_quad.core.surface_points import fan_triangles
 from hybrid_quad.core.validation import scaled_jacobian
 from input_patch import InputSurface
 from kept_lines import KeptLines, line_edges
+from results import build_id, read_results
 from runs import COLLECTION, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
 from shape_causes import CAUSES, OPEN, Inspector, Measured
-from sweep import build_id, read_results
 
 SHARP_DEGREES = {"sharp": 40.0, "no_sharp": None}
 GOOD = 0.3

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from results import build_id, read_results
 from runs import COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, run_and_judge
 from stored_peers import PEERS, stored_results
-from sweep import build_id, read_results
 
 COUNTED = """
 *Field*: vertices inside the surface around which the field turns by a quarter or more, on feature curves and off them.

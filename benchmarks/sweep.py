@@ -8,9 +8,7 @@ was interrupted goes on where it stopped; results of another build of the librar
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
-import lzma
 import os
 import random
 import sys
@@ -20,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import table
-from hybrid_quad.core import native
+from results import build_id, pack_results, read_results
 from runs import BAD, COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, models_of, run_and_judge
 from variants import VARIANTS, arguments_of
 
@@ -55,19 +53,13 @@ def main() -> int:
 
     judge = None if arguments.no_judge else arguments.judge
     environment = _environment(arguments)
+
+    def done_by_process(run: Run) -> tuple[Run, Outcome]:
+        wished = _with_wishes(run, out)
+        return run, run_and_judge(wished, out, limits(run), judge, arguments.threads, environment=environment)
+
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
-        waiting: set[Future[tuple[Run, Outcome]]] = {
-            pool.submit(
-                lambda run: (
-                    run,
-                    run_and_judge(
-                        _with_wishes(run, out), out, limits(run), judge, arguments.threads, environment=environment
-                    ),
-                ),
-                run,
-            )
-            for run in missing
-        }
+        waiting: set[Future[tuple[Run, Outcome]]] = {pool.submit(done_by_process, run) for run in missing}
         finished = 0
         try:
             while waiting:
@@ -181,47 +173,11 @@ def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool]]:
         yield from models_of(folder)
 
 
-def build_id(package: Path | None = None) -> str:
-    """Names the compiled library, of this Python or of the package in a folder."""
-    library = Path(str(native.load().__file__))
-    if package is not None:
-        library = package / "hybrid_quad" / library.name
-    return hashlib.sha256(library.read_bytes()).hexdigest()[:12]
-
-
 def _environment(arguments: argparse.Namespace) -> dict[str, str] | None:
     """Of the runs; none: this process's own."""
     if arguments.package is None:
         return None
     return {**os.environ, "PYTHONPATH": str(arguments.package.resolve()), "LD_PRELOAD": " ".join(arguments.preload)}
-
-
-def read_results(path: Path, build: str) -> dict[str, Outcome]:
-    """What is done, by the names of runs, as far as this build did it. The file may be compressed (``.xz``)."""
-    done: dict[str, Outcome] = {}
-    if not path.exists():
-        return done
-    data = path.read_bytes()
-    for line in (lzma.decompress(data) if path.suffix == ".xz" else data).splitlines():
-        try:
-            row = json.loads(line)
-        except ValueError:  # the last line of a sweep that was killed while it wrote
-            continue
-        name = row.pop("name")
-        if row.pop("build") == build:
-            done[name] = Outcome(**row)
-    return done
-
-
-def pack_results(done: dict[str, Outcome], build: str, path: Path) -> None:
-    """Writes what is done; of reports what a summary needs, of judgements what failed."""
-    kept = ("quads", "field_singularities", "irregular_vertices", "code", "warnings")
-    with lzma.open(path, "wt") as file:
-        for name, outcome in sorted(done.items()):
-            row = {"build": build, "name": name, **outcome.as_json()}
-            row["report"] = {key: value for key, value in outcome.report.items() if key in kept}
-            row["judgement"] = {}
-            file.write(json.dumps(row) + "\n")
 
 
 if __name__ == "__main__":

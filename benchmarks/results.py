@@ -1,0 +1,47 @@
+"""What runs came to, kept in files for the same build of the library to go on with."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import lzma
+from pathlib import Path
+
+from hybrid_quad.core import native
+from runs import Outcome
+
+
+def build_id(package: Path | None = None) -> str:
+    """Names the compiled library, of this Python or of the package in a folder."""
+    library = Path(str(native.load().__file__))
+    if package is not None:
+        library = package / "hybrid_quad" / library.name
+    return hashlib.sha256(library.read_bytes()).hexdigest()[:12]
+
+
+def read_results(path: Path, build: str) -> dict[str, Outcome]:
+    """What is done, by the names of runs, as far as this build did it. The file may be compressed (``.xz``)."""
+    done: dict[str, Outcome] = {}
+    if not path.exists():
+        return done
+    data = path.read_bytes()
+    for line in (lzma.decompress(data) if path.suffix == ".xz" else data).splitlines():
+        try:
+            row = json.loads(line)
+        except ValueError:  # the last line of a sweep that was killed while it wrote
+            continue
+        name = row.pop("name")
+        if row.pop("build") == build:
+            done[name] = Outcome(**row)
+    return done
+
+
+def pack_results(done: dict[str, Outcome], build: str, path: Path) -> None:
+    """Writes what is done; of reports what a summary needs, of judgements what failed, no messages: they say where files lay."""
+    kept = ("quads", "field_singularities", "irregular_vertices", "code", "warnings")
+    with lzma.open(path, "wt") as file:
+        for name, outcome in sorted(done.items()):
+            row = {"build": build, "name": name, **outcome.as_json()}
+            row["report"] = {key: value for key, value in outcome.report.items() if key in kept}
+            row["judgement"], row["message"] = {}, ""
+            file.write(json.dumps(row) + "\n")
