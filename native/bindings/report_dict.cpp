@@ -171,6 +171,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["curve_counts"] = list_of_counts(report.curve_counts);
   result["guides"] = list_of_guides(report.guides);
   result["features_given_way"] = report.features_given_way;
+  result["marks_given_way"] = report.marks_given_way;
   result["sharp_angle_used"] = report.sharp_angle_used > 0 ? py::object(py::float_(report.sharp_angle_used)) : py::none();
   result["flawed_quads"] = report.flawed_quads;
   result["extra_passes"] = report.extra_passes;

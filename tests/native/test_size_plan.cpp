@@ -104,6 +104,59 @@ TEST(SizePlan, FeaturesByAngleGiveWayAroundAPlace) {
   EXPECT_GT(features_left(all), 0);
 }
 
+TEST(SizePlan, MarksGiveWayAroundAPlaceAtTheVeryLast) {
+  const TriangleMesh cube = test::box(12, Vector3(4, 4, 4));
+  const Vector3 corner = Vector3::Zero(), opposite(4, 4, 4);
+  MarkedEdges all;
+  for (int h = 0; h < cube.halfedge_count(); ++h)
+    if (cube.opposite(h) < h && cube.normal(h / 3).dot(cube.normal(cube.opposite(h) / 3)) < 0.5)
+      all.ends.push_back({cube.from(h), cube.to(h)});
+  all.guides.assign(all.ends.size(), -1);
+  const ComponentPlan whole = plan_component(cube, 1.0, all, {}, Wishes{}, RemeshOptions{}, RunContext{});
+  int before = 0;
+  for (const double reach : {0.1, 0.5, 2.0}) {
+    const ComponentPlan fewer = without_marks_at(whole, {corner}, reach, 0, RunContext{});
+    EXPECT_EQ(violations_of(fewer.features, fewer.mesh), std::vector<std::string>{});
+    EXPECT_NEAR(fewer.quads, whole.quads, 1e-6 * whole.quads);
+    EXPECT_EQ(fewer.marks_given_way, 3);
+    EXPECT_EQ(fewer.given_way, whole.given_way);
+    int gone = 0;
+    for (int h = 0; h < fewer.mesh.halfedge_count(); ++h) {
+      EXPECT_LE(fewer.is_given[h], fewer.features.is_feature(h));
+      if (!whole.features.is_feature(h) || fewer.features.is_feature(h)) continue;
+      ++gone;
+      const double distance = std::min((fewer.mesh.position(fewer.mesh.from(h)) - corner).norm(),
+                                       (fewer.mesh.position(fewer.mesh.to(h)) - corner).norm());
+      EXPECT_LT(distance, 1.01 * reach);
+    }
+    EXPECT_GT(gone, before);
+    before = gone;
+    // What gave way is not taken back by what gives way after it.
+    EXPECT_EQ(without_features_at(fewer, {opposite}, 0, RunContext{}).features.curves.size(), fewer.features.curves.size());
+  }
+}
+
+TEST(SizePlan, TheBoundaryAndCountedCurvesNeverGiveWay) {
+  const TriangleMesh grid = test::flat_grid(8, 8);
+  MarkedEdges across;
+  for (int h = 0; h < grid.halfedge_count(); ++h) {
+    const Vector3 &a = grid.position(grid.from(h)), &b = grid.position(grid.to(h));
+    if (a[1] == 0.5 && b[1] == 0.5 && a[0] < b[0]) across.ends.push_back({grid.from(h), grid.to(h)});
+  }
+  ASSERT_EQ(across.ends.size(), 8u);
+  across.guides.assign(across.ends.size(), -1);
+  const auto given_way = [&](const std::vector<CountedChain>& chains) {
+    const ComponentPlan whole = plan_component(grid, 0.2, across, chains, Wishes{}, RemeshOptions{}, RunContext{});
+    const ComponentPlan fewer = without_marks_at(whole, {grid.position(0)}, 100, 0, RunContext{});
+    EXPECT_EQ(fewer.given_way, whole.given_way);
+    for (int h = 0; h < fewer.mesh.halfedge_count(); ++h)
+      if (fewer.mesh.opposite(h) < 0) EXPECT_TRUE(fewer.features.is_feature(h));
+    return fewer.marks_given_way;
+  };
+  EXPECT_EQ(given_way({}), 1);
+  EXPECT_EQ(given_way({{across.ends, 5}}), 0);
+}
+
 TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1));
   const auto features_for = [&](double quads, const MarkedEdges& marked) {

@@ -1,11 +1,14 @@
 """Real models: those of the repository, and more where a collection of test meshes lies beside it."""
 
 import csv
+import zlib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import hybrid_quad
+import variants
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support.results import assert_sound
@@ -50,3 +53,19 @@ def test_manifold_models_of_the_collection(name, sharp_angle):
     vertices, faces = read_mesh(COLLECTION / "dev" / f"{name}.obj")
     result = hybrid_quad.remesh(vertices, faces, quads=2000, sharp_angle=sharp_angle)
     assert violations(result.vertices, result.quads) == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not (COLLECTION / "dev" / "igl_beetle.obj").exists(), reason="no collection of meshes beside the repository"
+)
+def test_marks_that_no_valid_quads_have_room_for_give_way():
+    vertices, polygons = read_mesh(COLLECTION / "dev" / "igl_beetle.obj")
+    seed = [zlib.crc32(b"igl_beetle"), variants.VARIANTS.index("features")]
+    marked = variants.random_walks(polygons, np.random.default_rng(seed))
+    result = hybrid_quad.remesh(vertices, polygons, quads=100, sharp_angle=None, sharp_edges=marked)
+    assert violations(result.vertices, result.quads) == []
+    assert result.report["flawed_quads"] == 0
+    given_way = result.report["marks_given_way"]
+    assert 0 < given_way < 40
+    assert any(f"{given_way} curves of marked edges gave way" in warning for warning in result.report["warnings"])

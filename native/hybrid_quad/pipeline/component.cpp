@@ -135,6 +135,40 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
   }
 }
 
+/// Passes in which marked edges give way around the quads that all else left flawed, each from farther around, until one has none. It
+/// takes the place of `best` if it has fewer. \returns the plan that it followed
+std::optional<ComponentPlan> let_marks_give_way(const ComponentPlan& planned, double count, const SurfaceIndex& whole,
+                                                const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
+                                                ComponentResult& best, StageClock& clock, const RunContext& context) {
+  constexpr double kReaches[] = {0.3, 0.6, 1.2};  // of the edges that features need
+  constexpr PassSettings kSetting{1.0, 1e-4, PassKind::kWithoutFeatures};
+  if (!planned.guides.empty()) return std::nullopt;
+  std::optional<ComponentPlan> plan_of_best;
+  std::vector<Vector3> places;
+  for (const double reach : kReaches) {
+    if (best.flawed_quads == 0) break;
+    for (const int q : Finishing(planned, whole, wishes, options).flawed(best.mesh, context.threads))
+      places.push_back(middle_of(best.mesh, q));
+    ComponentPlan plan = without_marks_at(planned, places, reach, options.symmetry.planes, context);
+    ++best.passes;
+    if (plan.marks_given_way == planned.marks_given_way) continue;
+    try {
+      ComponentResult result = run_pass(plan, whole, wishes, guides, options, kSetting, clock, context);
+      settle_count(plan, count, whole, wishes, options, result, clock, context);
+      if (result.flawed_quads > 0 && result.flawed_quads <= kMany)
+        result.repairs.split_sides +=
+            put_right(&Finishing::split_flawed, Finishing(plan, whole, wishes, options), result, clock, context);
+      if (result.flawed_quads >= best.flawed_quads) continue;
+      result.passes = best.passes;
+      best = std::move(result);
+      plan_of_best = std::move(plan);
+    } catch (const InternalError&) {
+      ++best.repairs.broken_promises;
+    }
+  }
+  return plan_of_best;
+}
+
 /// Passes until one has no flawed quads; the best of them. \param first  the first of them, where it was made already
 ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<ComponentResult> first, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                  const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
@@ -216,13 +250,18 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
-  const Finishing finishing(*plan_of_best, whole, wishes, options);
   if (planned.guides.empty()) {
+    const Finishing finishing(*plan_of_best, whole, wishes, options);
     if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain)
       best.repairs.split_sides += put_right(&Finishing::split_flawed, finishing, best, clock, context);
     if (best.flawed_quads > 0)
       best.repairs.refined_places += put_right(&Finishing::refine_flawed, finishing, best, clock, context);
   }
+  std::optional<ComponentPlan> fewer_marks;
+  if (best.flawed_quads > 0)
+    fewer_marks = let_marks_give_way(*plan_of_best, count, whole, wishes, guides, options, best, clock, context);
+  if (fewer_marks) plan_of_best = &*fewer_marks;
+  const Finishing finishing(*plan_of_best, whole, wishes, options);
   if (planned.guides.empty() && options.improve) {
     // They see to it that no more quads are in doubt; one that was may still have become flawed, which no shape is worth.
     const auto put_best_right = [&](LastMeans means) {

@@ -67,6 +67,7 @@ class ComponentRemesher {
     for (const int q : doubts.flawed) result_.flawed_places.push_back(middle_of(result_.mesh, q));
     result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
     result_.features_given_way = plan_.given_way;
+    result_.marks_given_way = plan_.marks_given_way;
     result_.doubtful_quads = static_cast<int>(doubts.doubtful.size());
     for (const int q : doubts.doubtful) result_.limits.push_back(shorter_at(*plan_.index, q));
     return std::move(result_);

@@ -44,21 +44,49 @@ double shortness(const TriangleMesh& mesh, const FeatureGraph& features, double 
   return edges / quads;
 }
 
-/// Takes away the curves of which a half-edge does not remain.
+/// Takes away the half-edges that do not remain, and counts their curves.
 void take_features_away(ComponentPlan& plan, const std::vector<char>& remains) {
-  std::vector<char> gone(plan.features.curves.size(), 0);
-  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
-    if (plan.features.is_feature(h) && !remains[h]) gone[plan.features.halfedge_curve[h]] = 1;
-  plan.given_way += static_cast<int>(std::count(gone.begin(), gone.end(), 1));
+  enum Fate : char { kStays, kGone, kMarkedAndGone };
+  std::vector<Fate> fate(plan.features.curves.size(), kStays);
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
+    if (!plan.features.is_feature(h) || remains[h]) continue;
+    Fate& of_curve = fate[plan.features.halfedge_curve[h]];
+    of_curve = std::max(of_curve, plan.is_given[h] ? kMarkedAndGone : kGone);
+    plan.is_given[h] = 0;
+  }
+  plan.given_way += static_cast<int>(std::count(fate.begin(), fate.end(), kGone));
+  plan.marks_given_way += static_cast<int>(std::count(fate.begin(), fate.end(), kMarkedAndGone));
   plan.features = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
 }
 
-/// Half-edges of features that never give way: those that somebody marked, or wants a number of quads along.
-std::vector<char> firm_features(const ComponentPlan& plan) {
-  std::vector<char> is_firm = plan.is_given;
+/// \param is_firm  3 #F  \returns it with the features that somebody wants a number of quads along
+std::vector<char> with_counted(const ComponentPlan& plan, std::vector<char> is_firm) {
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
     if (plan.features.is_feature(h) && plan.features.curves[plan.features.halfedge_curve[h]].asked_count > 0) is_firm[h] = 1;
   return is_firm;
+}
+
+/// Half-edges of features that do not give way to others: those that somebody marked, or wants a number of quads along.
+std::vector<char> firm_features(const ComponentPlan& plan) { return with_counted(plan, plan.is_given); }
+
+/// Takes features away that pass near some places, but not the boundary.
+/// \param is_firm  3 #F: what else stays  \param reach  of an edge: how near is near
+template <class Reach>
+void take_away_at(ComponentPlan& plan, const std::vector<Vector3>& places, const std::vector<char>& is_firm, const Reach& reach) {
+  std::vector<char> remains = is_firm;
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
+    if (remains[h] || !plan.features.is_feature(h)) continue;
+    const int a = plan.mesh.from(h), b = plan.mesh.to(h);
+    const double near = reach(a, b);
+    remains[h] =
+        plan.mesh.opposite(h) < 0 ||
+        std::none_of(
+            places.begin(), places.end(),
+            [&](const Vector3& p) {
+              return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < near * near;
+            });
+  }
+  take_features_away(plan, remains);
 }
 
 /// Takes features away, by ever wider gaps between those that stay, until there is room. \returns whether any
@@ -101,18 +129,16 @@ bool make_room_for_shapes(ComponentPlan& plan) {
 }
 
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places) {
-  std::vector<char> remains = firm_features(plan);
-  for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
-    if (remains[h] || !plan.features.is_feature(h)) continue;
-    const int a = plan.mesh.from(h), b = plan.mesh.to(h);
-    const double reach = std::max(plan.target[a], plan.target[b]);
-    remains[h] = plan.mesh.opposite(h) < 0 || std::none_of(places.begin(), places.end(), [&](const Vector3& p) {
-      return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < reach * reach;
-    });
-  }
   const int before = plan.given_way;
-  take_features_away(plan, remains);
+  take_away_at(plan, places, firm_features(plan), [&](int a, int b) { return std::max(plan.target[a], plan.target[b]); });
   return plan.given_way > before;
+}
+
+bool make_room_in_marks_at(ComponentPlan& plan, const std::vector<Vector3>& places, double reach) {
+  const int before = plan.given_way + plan.marks_given_way;
+  take_away_at(plan, places, with_counted(plan, std::vector<char>(plan.mesh.halfedge_count(), 0)),
+               [&](int a, int b) { return reach * std::max(plan.needed[a], plan.needed[b]); });
+  return plan.given_way + plan.marks_given_way > before;
 }
 
 }  // namespace hybrid_quad

@@ -6,8 +6,8 @@
 
 namespace hybrid_quad {
 
-// Features by angle that a plan goes without, counted in given_way (docs/decisions/0006, 0007, 0014). Boundaries, marked edges
-// and curves with an asked count always stay. Lengths are to be planned anew after each.
+// Features that a plan goes without: by angle, counted in given_way (docs/decisions/0006, 0007, 0014), and at the very last marked
+// ones, in marks_given_way (0047). Boundaries and curves with an asked count always stay. Lengths are to be planned anew after each.
 
 /// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays.
 /// \param length  the usual edge length (scene units)
@@ -23,5 +23,9 @@ bool make_room_for_shapes(ComponentPlan& plan);
 
 /// Takes away the features that pass within an edge of some places. \returns whether any
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);
+
+/// Takes away the features that pass near some places, those of marked edges too: a valid mesh is worth more than they are.
+/// \param reach  how near, in the edges that features there need \returns whether any
+bool make_room_in_marks_at(ComponentPlan& plan, const std::vector<Vector3>& places, double reach);
 
 }  // namespace hybrid_quad

@@ -177,6 +177,7 @@ GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, c
     append(result, quads, parts[i], input_vertices_of(run, i, report.input_vertices), run.images, guided);
     report.fewest_quads += run.images * fewest_quads(plan.mesh);
     report.features_given_way += run.images * parts[i].features_given_way;
+    report.marks_given_way += run.images * parts[i].marks_given_way;
     report.sharp_angle_used = std::max(report.sharp_angle_used, plan.sharp_angle);
     singular_area += parts[i].singular_area;
     combinatorial_area += parts[i].combinatorial_area;
@@ -243,6 +244,10 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
     warnings.push_back(std::to_string(report.features_given_way) +
                        " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid "
                        "quads: more quads, or marks, keep them");
+  if (report.marks_given_way > 0)
+    warnings.push_back(
+        std::to_string(report.marks_given_way) +
+        " curves of marked edges gave way to valid quads: more quads, or fewer marks beside each other, keep them");
   if (const std::string raised = sharp_angle_warning(run); !raised.empty()) warnings.push_back(raised);
   const int lone = run.options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)

@@ -228,6 +228,16 @@ ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<V
   return without;
 }
 
+ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vector3>& places, double reach,
+                               PlaneSet mirror_planes, const RunContext& context) {
+  ComponentPlan without = plan;
+  without.part = -1;
+  if (!make_room_in_marks_at(without, places, reach)) return without;
+  plan_lengths(without, mirror_planes, context);
+  scale_plan(without, plan.quads / without.quads);
+  return without;
+}
+
 void scale_plan(ComponentPlan& plan, double quads_factor) {
   for (double& length : plan.target) length /= std::sqrt(quads_factor);
   plan.quads *= quads_factor;

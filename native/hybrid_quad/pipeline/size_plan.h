@@ -35,6 +35,7 @@ struct ComponentPlan {
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
+  int marks_given_way = 0;  ///< curves of marked edges that gave way to valid quads
 };
 
 /// Edges that are features whatever their angle.
@@ -69,6 +70,11 @@ ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_pl
 
 /// The plan for as many quads without the features by angle that pass within an edge of some places.
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes, const RunContext& context);
+
+/// The plan for as many quads without any features, marked ones neither, that pass near some places; but with the boundary and curves
+/// that have an asked count. \param reach  how near, in the edges that features there need
+ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vector3>& places, double reach,
+                               PlaneSet mirror_planes, const RunContext& context);
 
 /// The same lengths for more or fewer quads.
 void scale_plan(ComponentPlan& plan, double quads_factor);
