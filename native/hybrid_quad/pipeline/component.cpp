@@ -4,10 +4,9 @@
 #include <optional>
 #include <utility>
 
-#include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
-#include "hybrid_quad/pipeline/finishing.h"
+#include "hybrid_quad/pipeline/last_means.h"
 #include "hybrid_quad/pipeline/missed_loops.h"
 #include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -81,20 +80,6 @@ Extractable extractable(const ComponentPlan& planned, double count) {
   return out;
 }
 
-using LastMeans = int (Finishing::*)(QuadMesh&, const RunContext&) const;
-
-/// Last means against flawed and folded quads. Not where guides follow the quads' edges, which keep their number.
-/// \returns what `means` counts
-int put_right(const LastMeans means, const Finishing& finishing, ComponentResult& result, StageClock& clock, const RunContext& context) {
-  const RunContext improving = context.in_stage("improve", 0.97, 0.97);
-  const int count = clock.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
-  if (count == 0) return 0;
-  const Doubts doubts = finishing.doubts(result.mesh, context.threads);
-  result.flawed_quads = static_cast<int>(doubts.flawed.size());
-  result.doubtful_quads = static_cast<int>(doubts.doubtful.size());
-  return count;
-}
-
 double mean_shape(const QuadMesh& mesh) {
   double sum = 0;
   for (const auto& q : mesh.quads)
@@ -133,40 +118,6 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
   } catch (const InternalError&) {
     return std::nullopt;  // the passes that follow say what broke
   }
-}
-
-/// Passes in which marked edges give way around the quads that all else left flawed, each from farther around, until one has none. It
-/// takes the place of `best` if it has fewer. \returns the plan that it followed
-std::optional<ComponentPlan> let_marks_give_way(const ComponentPlan& planned, double count, const SurfaceIndex& whole,
-                                                const Wishes& wishes, const HardGuides& guides, const RemeshOptions& options,
-                                                ComponentResult& best, StageClock& clock, const RunContext& context) {
-  constexpr double kReaches[] = {0.3, 0.6, 1.2};  // of the edges that features need
-  constexpr PassSettings kSetting{1.0, 1e-4, PassKind::kWithoutFeatures};
-  if (!planned.guides.empty()) return std::nullopt;
-  std::optional<ComponentPlan> plan_of_best;
-  std::vector<Vector3> places;
-  for (const double reach : kReaches) {
-    if (best.flawed_quads == 0) break;
-    for (const int q : Finishing(planned, whole, wishes, options).flawed(best.mesh, context.threads))
-      places.push_back(middle_of(best.mesh, q));
-    ComponentPlan plan = without_marks_at(planned, places, reach, options.symmetry.planes, context);
-    ++best.passes;
-    if (plan.marks_given_way == planned.marks_given_way) continue;
-    try {
-      ComponentResult result = run_pass(plan, whole, wishes, guides, options, kSetting, clock, context);
-      settle_count(plan, count, whole, wishes, options, result, clock, context);
-      if (result.flawed_quads > 0 && result.flawed_quads <= kMany)
-        result.repairs.split_sides +=
-            put_right(&Finishing::split_flawed, Finishing(plan, whole, wishes, options), result, clock, context);
-      if (result.flawed_quads >= best.flawed_quads) continue;
-      result.passes = best.passes;
-      best = std::move(result);
-      plan_of_best = std::move(plan);
-    } catch (const InternalError&) {
-      ++best.repairs.broken_promises;
-    }
-  }
-  return plan_of_best;
 }
 
 /// Passes until one has no flawed quads; the best of them. \param first  the first of them, where it was made already
@@ -216,8 +167,8 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       if (are_few) settle_count(unrefined, count, whole, wishes, options, result, clock, pass);
       // A few splits change less than other passes, which have other quads everywhere.
       std::size_t in_vain = 0;
-      if ((!any || needs_more) && result.flawed_quads > 0 && result.flawed_quads <= kMany && planned.guides.empty()) {
-        result.repairs.split_sides += put_right(&Finishing::split_flawed, Finishing(unrefined, whole, wishes, options), result, clock, pass);
+      if ((!any || needs_more) && result.flawed_quads > 0 && result.flawed_quads <= kMany) {
+        LastMeans(unrefined, count, whole, wishes, guides, options, clock, pass).split_flawed(result);
         if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
       }
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
@@ -250,38 +201,9 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
-  if (planned.guides.empty()) {
-    const Finishing finishing(*plan_of_best, whole, wishes, options);
-    if (best.flawed_quads > 0 && best.mesh.quads.size() != split_in_vain)
-      best.repairs.split_sides += put_right(&Finishing::split_flawed, finishing, best, clock, context);
-    if (best.flawed_quads > 0)
-      best.repairs.refined_places += put_right(&Finishing::refine_flawed, finishing, best, clock, context);
-  }
-  std::optional<ComponentPlan> fewer_marks;
-  if (best.flawed_quads > 0)
-    fewer_marks = let_marks_give_way(*plan_of_best, count, whole, wishes, guides, options, best, clock, context);
-  if (fewer_marks) plan_of_best = &*fewer_marks;
-  const Finishing finishing(*plan_of_best, whole, wishes, options);
-  if (planned.guides.empty() && options.improve) {
-    // They see to it that no more quads are in doubt; one that was may still have become flawed, which no shape is worth.
-    const auto put_best_right = [&](LastMeans means) {
-      const QuadMesh before = best.mesh;
-      const int flawed_before = best.flawed_quads, doubtful_before = best.doubtful_quads;
-      const int places = put_right(means, finishing, best, clock, context);
-      if (best.flawed_quads <= flawed_before) return places;
-      best.mesh = before;
-      best.flawed_quads = flawed_before;
-      best.doubtful_quads = doubtful_before;
-      return 0;
-    };
-    best.repairs.reached_places += put_best_right(&Finishing::reach_cut_parts);
-    best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
-    const int splits = put_best_right(&Finishing::split_folded);
-    best.repairs.split_sides += splits;
-    if (splits > 0) best.repairs.raised_places += put_best_right(&Finishing::raise_shapes);
-    best.repairs.ended_searches += finishing.ended_searches();
-  }
-  best.repairs.opened_flat_quads += open_flat_quads(best.mesh, mean_edge_length(best.mesh), &whole, least_agreement(whole));
+  LastMeans last(*plan_of_best, count, whole, wishes, guides, options, clock, context);
+  last.put_flawed_right(best, best.mesh.quads.size() != split_in_vain);
+  last.improve_poor(best);
   return best;
 }
 
