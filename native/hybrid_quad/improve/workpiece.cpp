@@ -93,9 +93,9 @@ void Workpiece::bind_free(int v, const Vector3& normal) {
     // that costs little distance.
     filter.normal = normal / length;
     filter.min_cosine = kAgrees;
+    filter.within = std::sqrt(point.squared_distance) + kWorthInEdges * h;
     const SurfacePoint agreeing = index.nearest(mesh.positions[v], filter);
-    if (agreeing.face >= 0 && std::sqrt(agreeing.squared_distance) < std::sqrt(point.squared_distance) + kWorthInEdges * h)
-      point = agreeing;
+    if (agreeing.face >= 0) point = agreeing;
   }
   if (point.face < 0) point = index.nearest(mesh.positions[v]);
   if (point.face < 0) return;
