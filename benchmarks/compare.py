@@ -86,7 +86,7 @@ class _Ours:
                 return Result("hybrid-quad", "not run", here=True)
             outcome = run_and_judge(run, self._out, Limits(seconds=self._seconds), self._judge)
             self._done[run.name] = outcome
-            _append(self._out / "results.jsonl", {"build": build_id(), "name": run.name, **outcome.as_json()})
+            _append(self._out / "results.jsonl", {"name": run.name, **outcome.as_json(), "build": build_id()})
             print(f"{run.name}: {outcome.status}, {outcome.seconds:.1f} s", file=sys.stderr, flush=True)
         return from_outcome("hybrid-quad", self._done[run.name])
 
@@ -110,7 +110,7 @@ class _Peers:
             if name not in self._done:
                 outcome = self._run(peer, path, quads, is_cad, self._out / f"{name}.obj")
                 self._done[name] = outcome
-                _append(self._out / "peers.jsonl", {"build": peer.name, "name": name, **outcome.as_json()})
+                _append(self._out / "peers.jsonl", {"name": name, **outcome.as_json(), "build": peer.name})
                 print(f"{name}: {outcome.status}, {outcome.seconds:.1f} s", file=sys.stderr, flush=True)
             results.append(from_outcome(peer.name, self._done[name]))
         return results
@@ -172,8 +172,7 @@ def _outcomes(path: Path) -> dict[str, Outcome]:
                 row = json.loads(line)
             except ValueError:  # the last line of a run that was killed while it wrote
                 continue
-            name, _ = row.pop("name"), row.pop("build")
-            done[name] = Outcome(**row)
+            done[row.pop("name")] = Outcome(**row)
     return done
 
 

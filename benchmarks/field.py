@@ -88,7 +88,7 @@ class _Runs:
             outcome = run_and_judge(run, self._out, Limits(), self._judge, keep_meshes=False)
             self._done[run.name] = outcome
             with (self._out / "results.jsonl").open("a") as file:
-                file.write(json.dumps({"build": self._build, "name": run.name, **outcome.as_json()}) + "\n")
+                file.write(json.dumps({"name": run.name, **outcome.as_json(), "build": self._build}) + "\n")
             print(f"{run.name}: {outcome.status}, {outcome.seconds:.1f} s", file=sys.stderr, flush=True)
         return self._done[run.name]
 

@@ -1,4 +1,4 @@
-"""What runs came to, kept in files for the same build of the library to go on with."""
+"""What runs came to, kept in files for the same build of the library, or one that gives the same, to go on with."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def build_id(package: Path | None = None) -> str:
     return hashlib.sha256(library.read_bytes()).hexdigest()[:12]
 
 
-def read_results(path: Path, build: str) -> dict[str, Outcome]:
-    """What is done, by the names of runs, as far as this build did it. The file may be compressed (``.xz``)."""
+def read_results(path: Path, *builds: str) -> dict[str, Outcome]:
+    """What is done, by the names of runs, as far as these builds did it. The file may be compressed (``.xz``)."""
     done: dict[str, Outcome] = {}
     if not path.exists():
         return done
@@ -31,17 +31,17 @@ def read_results(path: Path, build: str) -> dict[str, Outcome]:
         except ValueError:  # the last line of a sweep that was killed while it wrote
             continue
         name = row.pop("name")
-        if row.pop("build") == build:
+        if row["build"] in builds:
             done[name] = Outcome(**row)
     return done
 
 
-def pack_results(done: dict[str, Outcome], build: str, path: Path) -> None:
+def pack_results(done: dict[str, Outcome], path: Path) -> None:
     """Writes what is done; of reports what a summary needs, of judgements what failed, no messages: they say where files lay."""
     kept = ("quads", "field_singularities", "irregular_vertices", "code", "warnings")
     with lzma.open(path, "wt") as file:
         for name, outcome in sorted(done.items()):
-            row = {"build": build, "name": name, **outcome.as_json()}
+            row = {"name": name, **outcome.as_json()}
             row["report"] = {key: value for key, value in outcome.report.items() if key in kept}
             row["judgement"], row["message"] = {}, ""
             file.write(json.dumps(row) + "\n")

@@ -86,6 +86,7 @@ class Outcome:
     judgement: dict[str, Any] = field(default_factory=dict)
     variant: str = "default"
     threads: int = 1
+    build: str = ""  # of the library, see results.build_id
 
     @property
     def is_good(self) -> bool:

@@ -36,11 +36,11 @@ def main() -> int:
     if not runs:
         print("no models to run: name some files, or a folder by --models", file=sys.stderr)
         return 2
-    done = {} if arguments.fresh else read_results(out / "results.jsonl", build)
+    done = {} if arguments.fresh else read_results(out / "results.jsonl", build, *arguments.also)
     if arguments.known is not None:
-        done = {**read_results(arguments.known, build), **done}
+        done = {**read_results(arguments.known, build, *arguments.also), **done}
     if arguments.pack is not None:
-        pack_results(done, build, arguments.pack)
+        pack_results(done, arguments.pack)
         return 0
     missing = [run for run in runs if run.name not in done or done[run.name].status in arguments.again]
     print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
@@ -56,7 +56,8 @@ def main() -> int:
 
     def done_by_process(run: Run) -> tuple[Run, Outcome]:
         wished = _with_wishes(run, out)
-        return run, run_and_judge(wished, out, limits(run), judge, arguments.threads, environment=environment)
+        outcome = run_and_judge(wished, out, limits(run), judge, arguments.threads, environment=environment)
+        return run, replace(outcome, build=build)
 
     with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {pool.submit(done_by_process, run) for run in missing}
@@ -68,7 +69,7 @@ def main() -> int:
                     run, outcome = future.result()
                     finished += 1
                     done[run.name] = outcome
-                    results.write(json.dumps({"build": build, "name": run.name, **outcome.as_json()}) + "\n")
+                    results.write(json.dumps({"name": run.name, **outcome.as_json()}) + "\n")
                     results.flush()
                     print(f"[{finished}/{len(missing)}] {_line(run, outcome)}", flush=True)
         except BaseException:
@@ -129,6 +130,13 @@ def _parser() -> argparse.ArgumentParser:
         help="of the processor, for a run (default: 60 s for 10000 quads, at least 60 s; by the clock five times as many)",
     )
     parser.add_argument("--memory-mb", type=int, default=Limits.memory_mb, help="for a run (default 8192); 0: no limit")
+    parser.add_argument(
+        "--also",
+        nargs="+",
+        default=[],
+        metavar="BUILD",
+        help="what these builds did counts too: they give the same results",
+    )
     parser.add_argument("--package", type=Path, metavar="DIR", help="folder with the package hybrid_quad to run")
     parser.add_argument("--preload", nargs="+", default=[], metavar="LIBRARY", help="of a sanitizer, for the runs")
     parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")

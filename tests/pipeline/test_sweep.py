@@ -1,6 +1,7 @@
 """The sweep over models: tables, limits, and going on where it stopped."""
 
 import csv
+import json
 import shutil
 import subprocess
 import sys
@@ -52,6 +53,15 @@ def test_a_table_of_good_and_bad_runs_made_only_once(root, tmp_path):
     elsewhere = sweep(root, tmp_path / "elsewhere", good, bad, "--quads", 200, "--settings", "sharp", "--known", packed)
     assert "0 to do" in elsewhere.stdout
     assert [row["quads"] for row in rows(tmp_path / "elsewhere")] == [row["quads"] for row in table]
+    of_another = tmp_path / "of_another"
+    of_another.mkdir()
+    lines = (out / "results.jsonl").read_text()
+    (build,) = {json.loads(line)["build"] for line in lines.splitlines()}
+    (of_another / "results.jsonl").write_text(lines.replace(build, "another"))
+    also = sweep(root, of_another, good, bad, "--quads", 200, "--settings", "sharp", "--also", "another")
+    assert "0 to do" in also.stdout
+    assert rows(of_another) == table
+    assert "2 to do" in sweep(root, of_another, good, bad, "--quads", 200, "--settings", "sharp").stdout
     more = sweep(root, out, good, "--quads", 200, "--settings", "sharp", "no_sharp")
     assert "2 runs, 1 to do" in more.stdout
     assert more.returncode == 0
