@@ -304,13 +304,16 @@ TEST(MeshBuilder, RefusesWhatIsNoSurface) {
 }
 
 TEST(MeshBuilder, RefusesWhatHasTooFewDigitsForItsQuads) {
-  const auto far_torus = [](double size) {
-    PolygonSoup soup = test::soup_of(test::torus(12, 8));
-    for (Vector3& p : soup.positions) p = size * p + Vector3(300, -500, 900);
+  const auto far = [](PolygonSoup soup, const Vector3& size) {
+    for (Vector3& p : soup.positions) p = p.cwiseProduct(size) + Vector3(300, -500, 900);
     return soup;
   };
+  const auto far_torus = [&](double size) { return far(test::soup_of(test::torus(12, 8)), Vector3::Constant(size)); };
+  const auto far_strip = [&](double width) { return far(test::soup_of(test::flat_grid(20, 2)), Vector3(1e-5, width, 1)); };
   EXPECT_EQ(refusal(far_torus(1e-7)), "coordinates_too_coarse");
   EXPECT_EQ(refusal(far_torus(1e-5)), "");
+  EXPECT_EQ(refusal(far_strip(1e-8)), "coordinates_too_coarse");
+  EXPECT_EQ(refusal(far_strip(1e-6)), "");
 }
 
 TEST(MeshBuilder, RefusesAMoebiusStrip) {

@@ -50,6 +50,8 @@ class MeshBuilder {
   void check_positions();
   void order();
   void normalize_positions();
+  void check_digits(const TriangleMesh& mesh);
+  [[noreturn]] void refuse_coarse_coordinates();
   void make_triangles();
   void weld();
   bool merge_vertices(const std::vector<int>& target);
@@ -77,6 +79,7 @@ class MeshBuilder {
   bool is_in_order_ = false;
   OrderedSoup ordered_;             ///< what all elements below are of
   std::vector<Vector3> positions_;  ///< moved to the box's centre and divided by its diagonal
+  double farthest_ = 0;  ///< the largest of the given coordinates, without its sign
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
   std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
@@ -149,11 +152,24 @@ void MeshBuilder::normalize_positions() {
   const Vector3 half = high - centre;
   const double size = half.maxCoeff();
   if (!(size > 0)) refuse("no_area", "All vertices lie at the same place.", "", {});
-  if (size < kLeastExtent * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff())
-    refuse("coordinates_too_coarse", "The mesh is so far from the origin that its coordinates have no digits left for its shape.", "", {});
+  farthest_ = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+  if (size < kLeastExtent * farthest_) refuse_coarse_coordinates();
   const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
   positions_.reserve(given.size());
   for (const Vector3& p : given) positions_.push_back((p - centre) / size / diagonal);
+}
+
+/// A wire is as long as one likes: it is its area that has to hold the quads.
+void MeshBuilder::check_digits(const TriangleMesh& mesh) {
+  double area = 0;  // over the squared distance: squares of tiny or huge numbers are lost
+  for (int h = 0; h < mesh.halfedge_count(); h += 3)
+    area += 0.5 * (mesh.edge_vector(h) / farthest_).cross(mesh.edge_vector(h + 1) / farthest_).norm();
+  if (std::sqrt(area) < 2 * kLeastExtent) refuse_coarse_coordinates();
+}
+
+void MeshBuilder::refuse_coarse_coordinates() {
+  refuse("coordinates_too_coarse", "The mesh is so far from the origin that its coordinates have no digits left for its shape.",
+         "", {});
 }
 
 void MeshBuilder::make_triangles() {
@@ -383,6 +399,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   resolve_faces(built);
   drop_negligible_components(built);
+  check_digits(built.mesh);
   for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
   for (int& f : built.input_face) f = ordered_.given_face[f];
   return built;

@@ -263,21 +263,13 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
       warnings.push_back(std::move(warning));
 }
 
-bool has_quad_without_area(const QuadMesh& mesh) {
-  const auto& p = mesh.positions;
-  return std::any_of(mesh.quads.begin(), mesh.quads.end(),
-                     [&](const std::array<int, 4>& v) { return (p[v[2]] - p[v[0]]).cross(p[v[3]] - p[v[1]]).isZero(0); });
-}
-
-/// Where the way back rounds, corners are put exactly where the input has them, and very small quads far from the origin may have no
-/// digits left for an area: they are opened again. \returns number of these
-int move_outward(const UnitFrame& frame, const PolygonSoup& soup, QuadMesh& mesh) {
+/// Where the way back rounds, corners are put exactly where the input has them.
+void move_outward(const UnitFrame& frame, const PolygonSoup& soup, QuadMesh& mesh) {
   const bool is_exact = frame.centre.isZero(0);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const bool is_input_vertex = mesh.kind[v] == VertexKind::kCorner && mesh.anchor[v] >= 0;
     mesh.positions[v] = is_input_vertex && !is_exact ? soup.positions[mesh.anchor[v]] : frame.outward(mesh.positions[v]);
   }
-  return has_quad_without_area(mesh) ? open_flat_quads(mesh, mean_edge_length(mesh)) : 0;
 }
 
 }  // namespace
@@ -327,7 +319,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     measure_shapes(result);
     if (run.options.measure_distances) measure_distances(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });
-  report.repairs.opened_flat_quads += move_outward(run.frame, soup, result.mesh);
+  move_outward(run.frame, soup, result.mesh);
   report.stages = clock.records;
   return result;
 }
