@@ -34,7 +34,7 @@ constexpr double kLeastShare = 1e-9;     ///< of the area; parts with less are s
 constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
 /// Over the distance from the origin. There are then ten million places along the mesh: enough that quads of a thousandth of it
 /// have an area, and do not lose the ten thousandth of an edge by which flat ones are opened.
-constexpr double kLeastExtent = 1e-9;
+constexpr double kLeastExtent = 1e-9;  // half the longest side of the box, and half the root of the area
 
 /// Builds the mesh step by step; every step notes the defects that it found.
 class MeshBuilder {

@@ -168,7 +168,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       // A few splits change less than other passes, which have other quads everywhere.
       std::size_t in_vain = 0;
       if ((!any || needs_more) && result.flawed_quads > 0 && result.flawed_quads <= kMany) {
-        LastMeans(unrefined, count, whole, wishes, guides, options, clock, pass).split_flawed(result);
+        LastMeans(unrefined, count, whole, wishes, guides, options, budget, clock, pass).split_flawed(result);
         if (result.flawed_quads > 0) in_vain = result.mesh.quads.size();
       }
       const bool is_in_vain = as_needed && any && result.flawed_quads > kWorse * best.flawed_quads;
@@ -201,7 +201,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   }
   if (!any) throw InternalError("remesh", broken);
   if (!are_few) settle_count(*plan_of_best, count, whole, wishes, options, best, clock, context);
-  LastMeans last(*plan_of_best, count, whole, wishes, guides, options, clock, context);
+  LastMeans last(*plan_of_best, count, whole, wishes, guides, options, budget, clock, context);
   last.put_flawed_right(best, best.mesh.quads.size() != split_in_vain);
   last.improve_poor(best);
   return best;

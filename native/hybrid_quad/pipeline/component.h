@@ -42,6 +42,7 @@ struct ComponentResult {
 /// A time would make the result depend on the machine.
 struct WorkBudget {
   double left = 0;
+  double for_marks = 0;  ///< of passes in which marked edges give way, when all others have been made
 };
 
 /// Remeshes one connected component (paper 3 and 4, then improvement).

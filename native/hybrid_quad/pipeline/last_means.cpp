@@ -9,9 +9,11 @@
 
 namespace hybrid_quad {
 
-LastMeans::LastMeans(const ComponentPlan& plan, double count, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
-                     const RemeshOptions& options, StageClock& clock, const RunContext& context)
-    : planned_(plan), count_(count), whole_(whole), wishes_(wishes), guides_(guides), options_(options), clock_(clock), context_(context) {}
+LastMeans::LastMeans(const ComponentPlan& plan, double count, const SurfaceIndex& whole, const Wishes& wishes,
+                     const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
+                     const RunContext& context)
+    : planned_(plan), count_(count), whole_(whole), wishes_(wishes), guides_(guides), options_(options), budget_(budget),
+      clock_(clock), context_(context) {}
 
 void LastMeans::split_flawed(ComponentResult& result) const {
   if (result.flawed_quads > 0 && !keeps_numbers()) result.repairs.split_sides += apply(&Finishing::split_flawed, finishing(), result);
@@ -60,8 +62,8 @@ int LastMeans::apply_if_no_worse(Means means, const Finishing& finishing, Compon
   return 0;
 }
 
-/// Passes without the features near flawed quads, marked ones neither, each from farther around; until one has none flawed. It takes the result's
-/// place if it has fewer.
+/// Passes without the features near flawed quads, marked ones neither, each from farther around; until one has none flawed, or work as much as the
+/// last pass took is not left. It takes the result's place if it has fewer.
 void LastMeans::let_marks_give_way(ComponentResult& result) {
   constexpr double kReaches[] = {0.3, 0.6, 1.2};  // of the edges that features need
   constexpr PassSettings kSettings{1.0, 1e-4, PassKind::kWithoutFeatures};
@@ -72,11 +74,17 @@ void LastMeans::let_marks_give_way(ComponentResult& result) {
     for (const int q : finishing().flawed(result.mesh, context_.threads)) places.push_back(middle_of(result.mesh, q));
     ComponentPlan plan = without_marks_at(planned_, places, reach, options_.symmetry.planes, context_);
     if (plan.marks_given_way == planned_.marks_given_way) continue;
+    if (result.work > budget_.for_marks) {
+      result.gave_up = true;
+      break;
+    }
     ++result.passes;
     try {
       ComponentResult other = run_pass(plan, whole_, wishes_, guides_, options_, kSettings, clock_, context_);
+      budget_.for_marks -= other.work;
       settle_count(plan, count_, whole_, wishes_, options_, other, clock_, context_);
-      if (other.flawed_quads <= kMostToSplit) LastMeans(plan, count_, whole_, wishes_, guides_, options_, clock_, context_).split_flawed(other);
+      if (other.flawed_quads <= kMostToSplit)
+        LastMeans(plan, count_, whole_, wishes_, guides_, options_, budget_, clock_, context_).split_flawed(other);
       if (other.flawed_quads >= result.flawed_quads) continue;
       other.passes = result.passes;
       result = std::move(other);

@@ -12,9 +12,9 @@ namespace hybrid_quad {
 class LastMeans {
  public:
   /// \param plan  that the result followed, before passes refined it  \param count  quads wanted
-  /// \param whole  the surface that the component is part of
+  /// \param whole  the surface that the component is part of  \param budget  what passes without marked edges take is taken from it
   LastMeans(const ComponentPlan& plan, double count, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
-            const RemeshOptions& options, StageClock& clock, const RunContext& context);
+            const RemeshOptions& options, WorkBudget& budget, StageClock& clock, const RunContext& context);
   LastMeans(const LastMeans&) = delete;
   LastMeans& operator=(const LastMeans&) = delete;
 
@@ -43,6 +43,7 @@ class LastMeans {
   const Wishes& wishes_;
   const HardGuides& guides_;
   const RemeshOptions& options_;
+  WorkBudget& budget_;
   StageClock& clock_;
   const RunContext& context_;
 };

@@ -26,6 +26,7 @@ constexpr double kLeastOfPlan = 0.5;     // no component pays with all its shape
 
 /// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
 constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
+constexpr double kWorkForMarks = 0.1;  // as much besides
 
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 /// \param guided  gets those of the component
@@ -126,7 +127,8 @@ RunContext context_of_component(const RunContext& run, double done, double share
 std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex& whole, StageClock& clock) {
   std::vector<ComponentResult> parts(run.components.size());
   CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
-  WorkBudget work{kExtraWork + kExtraWorkPerQuad * run.wanted};
+  const double extra = kExtraWork + kExtraWorkPerQuad * run.wanted;
+  WorkBudget work{extra, kWorkForMarks * extra};
   double done = 0;
   for (const int i : smallest_first(run.plans)) {
     ComponentPlan& plan = run.plans[i];

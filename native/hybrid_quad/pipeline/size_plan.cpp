@@ -131,6 +131,18 @@ Stretch least_stretch(const std::vector<ComponentPlan>& plans, double quads_aske
   return stretch;
 }
 
+/// The plan for as many quads after some features were taken away. \param take_away  from a plan; returns whether any
+template <class TakeAway>
+ComponentPlan with_fewer_features(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context,
+                                  const TakeAway& take_away) {
+  ComponentPlan fewer = plan;
+  fewer.part = -1;
+  if (!take_away(fewer)) return fewer;
+  plan_lengths(fewer, mirror_planes, context);
+  scale_plan(fewer, plan.quads / fewer.quads);
+  return fewer;
+}
+
 }  // namespace
 
 ComponentPlan plan_component(const TriangleMesh& mesh, double length, const MarkedEdges& marked,
@@ -210,32 +222,18 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
 }
 
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
-  ComponentPlan roomy = plan;
-  roomy.part = -1;
-  if (!make_room_for_shapes(roomy)) return roomy;
-  plan_lengths(roomy, mirror_planes, context);
-  scale_plan(roomy, plan.quads / roomy.quads);
-  return roomy;
+  return with_fewer_features(plan, mirror_planes, context, make_room_for_shapes);
 }
 
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,
                                   const RunContext& context) {
-  ComponentPlan without = plan;
-  without.part = -1;
-  if (!make_room_at(without, places)) return without;
-  plan_lengths(without, mirror_planes, context);
-  scale_plan(without, plan.quads / without.quads);
-  return without;
+  return with_fewer_features(plan, mirror_planes, context, [&](ComponentPlan& without) { return make_room_at(without, places); });
 }
 
 ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vector3>& places, double reach,
                                PlaneSet mirror_planes, const RunContext& context) {
-  ComponentPlan without = plan;
-  without.part = -1;
-  if (!make_room_in_marks_at(without, places, reach)) return without;
-  plan_lengths(without, mirror_planes, context);
-  scale_plan(without, plan.quads / without.quads);
-  return without;
+  return with_fewer_features(plan, mirror_planes, context,
+                             [&](ComponentPlan& without) { return make_room_in_marks_at(without, places, reach); });
 }
 
 void scale_plan(ComponentPlan& plan, double quads_factor) {
