@@ -23,7 +23,7 @@ from comparison import Case, Result, from_outcome, from_stored, page
 from hybrid_quad.core.mesh_arrays import surface_area
 from hybrid_quad.core.mesh_io import read_mesh
 from judging import judged
-from results import build_id
+from results import build_id, read_results
 from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, measure, run_and_judge
 from stored_peers import PEERS, QUADS, stored_results
 
@@ -77,7 +77,7 @@ class _Ours:
         self._judge: Path = arguments.judge
         self._seconds: float = arguments.time_limit
         self._only_recorded: bool = arguments.only_recorded
-        self._done = {**_outcomes(arguments.results), **_outcomes(self._out / "results.jsonl")}
+        self._done = {**read_results(arguments.results), **read_results(self._out / "results.jsonl")}
 
     def __call__(self, path: Path, quads: int) -> Result:
         run = Run(path.stem, path, quads, "sharp")
@@ -99,7 +99,7 @@ class _Peers:
         self._out: Path = arguments.out
         self._judge: Path = arguments.judge
         self._limits = Limits(seconds=arguments.time_limit)
-        self._done = _outcomes(self._out / "peers.jsonl")
+        self._done = read_results(self._out / "peers.jsonl")
 
     def __call__(self, path: Path, quads: int, is_cad: bool) -> list[Result]:
         results = []
@@ -161,19 +161,6 @@ def _chord_percents(path: Path, counts: Iterable[int]) -> dict[int, float]:
     diagonal = float(((vertices.max(axis=0) - vertices.min(axis=0)) ** 2).sum() ** 0.5)
     curves = feature_curves(vertices, faces, SHARP_DEGREES)
     return {quads: 100 * chord_error(curves, (area / quads) ** 0.5) / diagonal for quads in counts}
-
-
-def _outcomes(path: Path) -> dict[str, Outcome]:
-    """Of whatever build, by the names of runs; the last one of each."""
-    done = {}
-    if path.exists():
-        for line in path.read_text().splitlines():
-            try:
-                row = json.loads(line)
-            except ValueError:  # the last line of a run that was killed while it wrote
-                continue
-            done[row.pop("name")] = Outcome(**row)
-    return done
 
 
 def _append(path: Path, row: dict[str, object]) -> None:

@@ -20,7 +20,8 @@ def build_id(package: Path | None = None) -> str:
 
 
 def read_results(path: Path, *builds: str) -> dict[str, Outcome]:
-    """What is done, by the names of runs, as far as these builds did it. The file may be compressed (``.xz``)."""
+    """What is done, by the names of runs, as far as these builds did it; whatever did it where none is named. The file may be
+    compressed (``.xz``)."""
     done: dict[str, Outcome] = {}
     if not path.exists():
         return done
@@ -31,7 +32,7 @@ def read_results(path: Path, *builds: str) -> dict[str, Outcome]:
         except ValueError:  # the last line of a sweep that was killed while it wrote
             continue
         name = row.pop("name")
-        if row["build"] in builds:
+        if not builds or row["build"] in builds:
             done[name] = Outcome(**row)
     return done
 

@@ -169,19 +169,64 @@ TEST(Features, ASmallClearLoopStaysWhereNoiseGoes) {
   EXPECT_EQ(regions(detect(with_noise(step, 0.05, 5), options)), regions(detect(step, options)));
 }
 
-TEST(Features, ClearRingsNeedTwoThirdsOfTheLengthOfOthers) {
-  const TriangleMesh m = test::capped_cylinder(24, 12);
-  const double around = 2 * 3.14159265358979323846;
-  const auto curves = [&](const TriangleMesh& mesh, double share) {
+/// The surface that a polyline (radius, height) sweeps about the z axis, from the outside in; its last point is on the axis.
+TriangleMesh turned(const std::vector<std::array<double, 2>>& profile, int sides) {
+  std::vector<Vector3> p;
+  std::vector<std::array<int, 3>> t;
+  const int rings = static_cast<int>(profile.size()) - 1;
+  for (int r = 0; r < rings; ++r)
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 2 * 3.14159265358979323846 * i / sides;
+      p.emplace_back(profile[r][0] * std::cos(angle), profile[r][0] * std::sin(angle), profile[r][1]);
+    }
+  p.emplace_back(0, 0, profile.back()[1]);
+  for (int r = 0; r < rings; ++r)
+    for (int i = 0; i < sides; ++i) {
+      const int next = (i + 1) % sides, a = r * sides + i, b = r * sides + next;
+      if (r + 1 == rings) {
+        t.push_back({a, b, rings * sides});
+        continue;
+      }
+      t.push_back({a, b, b + sides});
+      t.push_back({a, b + sides, a + sides});
+    }
+  return TriangleMesh(std::move(p), std::move(t));
+}
+
+TEST(Features, RimAndBottomOfABlindHoleStayTogether) {
+  // Of radius 1, in a round plate of radius 8: with short triangles along its wall, and with one from rim to bottom.
+  std::vector<std::array<double, 2>> profile{{8, 0}, {4, 0}, {2, 0}, {1.5, 0}, {1, 0}};
+  for (const int rows : {1, 20}) {
+    std::vector<std::array<double, 2>> hole = profile;
+    for (int row = 1; row <= rows; ++row) hole.push_back({1, -4.0 * row / rows});
+    hole.push_back({0.5, -4.2});
+    hole.push_back({0, -4.4});
+    const TriangleMesh m = turned(hole, 24);
+    const double around = 2 * 3.14159265358979323846;
+    for (const double share : {3.0, 1.0, 0.7, 0.45}) {
+      FeatureOptions options;
+      options.minimum_length = around / share;
+      const FeatureGraph g = detect(m, options);
+      EXPECT_EQ(g.curves.size(), 3u) << "the boundary, the rim and the bottom's edge; rows " << rows << ", share " << share;
+      EXPECT_EQ(g.rounds_left_out, 0);
+    }
     FeatureOptions options;
-    options.minimum_length = around / share;
-    return detect(mesh, options).curves.size();
-  };
-  EXPECT_EQ(curves(m, 0.7), 2u);
-  EXPECT_EQ(curves(m, 0.6), 0u);
+    options.minimum_length = around / 0.35;
+    const FeatureGraph g = detect(m, options);
+    EXPECT_EQ(g.curves.size(), 1u) << rows;
+    EXPECT_EQ(g.rounds_left_out, 2) << "what is lost is told";
+  }
+}
+
+TEST(Features, OnlyCurvesThatGoAroundEvenlyAreRounds) {
   FeatureOptions options;
   options.minimum_length = 12 / 0.7;
   EXPECT_TRUE(detect(test::box(3), options).curves.empty()) << "these meet in threes";
+  // A rim of seven sides may be a bump of a few triangles.
+  const std::vector<std::array<double, 2>> bump{{8, 0}, {4, 0}, {1, 0}, {0.9, 1}, {0, 1.1}};
+  options.minimum_length = 2 * 3.14159265358979323846 / 0.7;
+  EXPECT_EQ(detect(turned(bump, 7), options).curves.size(), 1u);
+  EXPECT_EQ(detect(turned(bump, 9), options).curves.size(), 3u);
 }
 
 TEST(Features, FoldsThatFenceInLessThanAQuadAreNone) {

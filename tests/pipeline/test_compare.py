@@ -1,11 +1,15 @@
 """The comparison with peers: what is read of them, what is measured of features, and what a target says."""
 
+import json
+
 import numpy as np
 import pytest
 
 from chord import chord_error, feature_curves
 from comparison import Case, Result, page
 from hybrid_quad.core.mesh_arrays import as_polygons
+from results import read_results
+from runs import Outcome
 from stored_peers import stored_results
 from support import surfaces
 
@@ -90,3 +94,17 @@ def test_an_invalid_peer_is_no_measure_for_irregular_vertices():
     peer = Result("QuadWild-BiMDF", "invalid", False, quads=2000, irregular=1, distance=0.03, feature=0.3)
     text, good = page([Case("part", 2000, True, 0.2, [_ours(), peer])])
     assert good, text
+
+
+def test_results_of_any_build_are_read_and_of_named_ones_alone(tmp_path):
+    path = tmp_path / "results.jsonl"
+    outcomes = {
+        "a_500_sharp": Outcome("a", 500, "sharp", "valid", build="one"),
+        "b_500_sharp": Outcome("b", 500, "sharp", "valid", build="two"),
+    }
+    path.write_text(
+        "".join(json.dumps({"name": name, **outcome.as_json()}) + "\n" for name, outcome in outcomes.items()) + '{"na'
+    )
+    assert read_results(path) == outcomes
+    assert set(read_results(path, "two")) == {"b_500_sharp"}
+    assert read_results(tmp_path / "none.jsonl") == {}

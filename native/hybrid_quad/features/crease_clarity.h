@@ -15,18 +15,17 @@ class CreaseClarity {
   /// \param normals #F, unit
   /// \param barriers 3 #F, symmetric: edges that bound a side; boundary edges do anyway
   /// The arguments are referred to, not copied.
-  CreaseClarity(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const std::vector<char>& barriers, double radius);
+  CreaseClarity(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const std::vector<char>& barriers);
 
-  /// \param h half-edge of an edge with two faces
-  double operator()(int h);
+  /// \param h half-edge of an edge with two faces  \param radius  how far away the bend is seen from
+  double operator()(int h, double radius);
 
  private:
-  Vector3 mean_normal(int h, const Vector3& middle);
+  Vector3 mean_normal(int h, const Vector3& middle, double radius);
 
   const TriangleMesh& mesh_;
   const std::vector<Vector3>& normals_;
   const std::vector<char>& barriers_;
-  double radius_;
   std::vector<int> seen_, queue_;
   int round_ = 0;
 };

@@ -24,6 +24,8 @@ struct FeatureGraph {
   std::vector<int> face_region;     ///< #F: connected region of faces between feature curves
   double sharp_angle = 0;           ///< of detect_features: degrees above which edges by angle were looked at; 0: none were
 
+  int rounds_left_out = 0;  ///< of detect_features: rims of holes and pins by angle that are too small for the minimum length
+
   bool is_feature(int h) const { return halfedge_curve[h] >= 0; }
 };
 
@@ -32,8 +34,9 @@ struct FeatureOptions {
   bool use_sharp_angle = true;
   double weak_angle = 20.0;      ///< hysteresis: a chain of weaker edges is kept where it joins strong ones
   /// Scene units; about three edges of the quads to come. Connected edges by angle that are shorter than this, counting only
-  /// what is clearly a crease seen from a sixth of it away, are taken for noise of a sculpt or scan; of a closed curve that is clear
-  /// all around, two thirds are enough. 0: all above the sharp angle are kept.
+  /// what is clearly a crease seen from a sixth of it away, are taken for noise of a sculpt or scan. Closed curves of eight edges and more
+  /// that go around evenly, as the rims of holes, are none: two fifths are enough, and they are seen from half their radius away.
+  /// 0: all above the sharp angle are kept.
   double minimum_length = 0.0;
   double corner_angle = 100.0;   ///< degrees between consecutive edges of a curve below which its vertex is a corner
   std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped

@@ -181,6 +181,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.corners = features.corners;
   plan.features = detect_features(plan.mesh, features, context);
   plan.sharp_angle = plan.features.sharp_angle;
+  plan.given_way = plan.features.rounds_left_out;
   if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density);
   if (!plan.guides.empty()) add_guide_corners(plan);
   plan.density = density_on(wishes, plan.mesh, plan.length);
