@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "hybrid_quad/sizing/disk_cut.h"
@@ -128,6 +129,29 @@ TEST(CurlCorrection, PotentialsLeaveNoCurlToSpeakOf) {
     }
     EXPECT_LT(curl_of(surface.mesh, field), std::max(0.02 * before, 1e-6));
   }
+}
+
+TEST(CurlCorrection, LastDigitsOfCoordinatesMakeNoDifference) {
+  // Edges of the boundary from a few millionths of the whole on: the springs along these must not drown the faces.
+  const TriangleMesh grid = test::flat_grid(24, 16);
+  std::vector<Vector3> positions = grid.positions();
+  for (Vector3& p : positions) p = Vector3(std::pow(p.x(), 4), p.y(), 0.3 * std::sin(3 * p.x() + 2 * p.y()));
+  const WorkingSurface surface = surface_of(TriangleMesh(positions, grid.faces()), 0.1, 40);
+  std::mt19937 random(5);
+  for (Vector3& p : positions)
+    for (int i = 0; i < 3; ++i) p[i] += 1e-15 * (2.0 * random() / 4294967295.0 - 1);
+  const WorkingSurface nearly = surface_of(TriangleMesh(positions, grid.faces()), 0.1, 40);
+  const FrameField field = field_on(surface);
+  const auto x = curl_correction(surface, field, CurlCorrectionOptions{}, RunContext{});
+  const auto y = curl_correction(nearly, field, CurlCorrectionOptions{}, RunContext{});
+  double largest = 0, corrected = 0;
+  for (std::size_t f = 0; f < x.size(); ++f)
+    for (int i = 0; i < 4; ++i) {
+      largest = std::max(largest, std::abs(x[f][i] - y[f][i]));
+      corrected = std::max(corrected, std::abs(x[f][i] - (i == 0 || i == 3)));
+    }
+  EXPECT_GT(corrected, 0.1) << "there is something to correct";
+  EXPECT_LT(largest, 1e-8);
 }
 
 }  // namespace

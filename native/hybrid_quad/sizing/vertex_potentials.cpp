@@ -54,6 +54,9 @@ void VertexPotentials::add_springs(const TriangleMesh& mesh, const FrameField& f
 }
 
 void VertexPotentials::assemble(const CorrectionCosts& costs, double lambda, SparseMatrix& matrix, Eigen::VectorXd& right_side) const {
+  // Beside faces, whose stiffness is of the order of 1 to 100: firm to a ten thousandth of an edge. What is stiffer by far leaves nothing of a double's digits to
+  // the rest, and turning the surface in space would then change the frames by a millionth.
+  constexpr double kStiffest = 1e6;
   using Matrix23 = Eigen::Matrix<double, 2, 3>;
   const int n = static_cast<int>(place_.size()), faces = static_cast<int>(gradient_.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -79,7 +82,7 @@ void VertexPotentials::assemble(const CorrectionCosts& costs, double lambda, Spa
   for (const Spring& spring : springs_)
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b) {
-        const double value = spring.coefficient[a] * spring.coefficient[b] / (lambda * spring.softness);
+        const double value = spring.coefficient[a] * spring.coefficient[b] / std::max(lambda * spring.softness, 1 / kStiffest);
         if (value != 0) add(a, b, spring.unknown[a], spring.unknown[b], value);
       }
   // Functions are known up to a constant: one value of each is held.
