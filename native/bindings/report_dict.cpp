@@ -174,6 +174,7 @@ py::dict dict_of_report(const RemeshReport& report) {
   result["marks_given_way"] = report.marks_given_way;
   result["sharp_angle_used"] = report.sharp_angle_used > 0 ? py::object(py::float_(report.sharp_angle_used)) : py::none();
   result["flawed_quads"] = report.flawed_quads;
+  result["flawed_faces"] = report.flawed_faces;
   result["extra_passes"] = report.extra_passes;
   result["edge_loops"] = dict_of_loops(report.edge_loops);
   result["scaled_jacobian"] = jacobian;

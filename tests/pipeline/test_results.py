@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import hybrid_quad
+from fuzz.cases import make_case
 from hybrid_quad.core import report
 from hybrid_quad.core.validation import scaled_jacobian
 from support import surfaces
@@ -195,3 +196,18 @@ def test_orientation_is_the_input_s():
         a, b, c, d = result.vertices[result.quads].transpose(1, 0, 2)
         volume = np.einsum("ij,ij->i", a + b + c + d, np.cross(c - a, d - b)).sum()
         assert np.sign(volume) == sign
+
+
+def test_flawed_quads_are_named():
+    # A random surface of 69 faces with forty marked edges, for five quads: one of its quads has no way to lie right.
+    case = make_case(77152)
+    result = hybrid_quad.remesh(case.vertices, case.faces, **case.options)
+    report = result.report
+    assert report["flawed_quads"] > 0, "mended: another case has to stand for it"
+    assert len(report["flawed_faces"]) == report["flawed_quads"]
+    assert all(0 <= face < len(result.quads) for face in report["flawed_faces"])
+    (warning,) = (warning for warning in report["warnings"] if "point" in warning)
+    assert f"face {report['flawed_faces'][0]}" in warning
+
+    sound = hybrid_quad.remesh(*SURFACES["torus"], quads=400)
+    assert (sound.report["flawed_quads"], sound.report["flawed_faces"]) == (0, [])

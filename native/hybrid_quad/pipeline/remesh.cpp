@@ -237,27 +237,41 @@ std::string sharp_angle_warning(const RunPlan& run) {
          ": up to there they are no clearer than the roughness around them; marks keep them";
 }
 
+/// "1 quad", "2 quads"
+std::string counted(int count, const std::string& thing) { return std::to_string(count) + " " + thing + (count == 1 ? "" : "s"); }
+
+std::string flawed_warning(const RemeshReport& report, bool gave_up) {
+  constexpr std::size_t kNamed = 5;
+  const std::vector<int>& faces = report.flawed_faces;
+  std::string text =
+      counted(report.flawed_quads, "quad") +
+      (report.flawed_quads == 1 ? " points against the surface or has no area" : " point against the surface or have no area");
+  for (std::size_t i = 0; i < std::min(kNamed, faces.size()); ++i)
+    text += (i > 0 ? ", " : faces.size() == 1 ? " (face " : " (faces ") + std::to_string(faces[i]);
+  if (!faces.empty()) text += faces.size() > kNamed ? ", ...)" : ")";
+  return gave_up ? text + "; more tries would have taken too long" : text;
+}
+
 /// What was asked and not met, and quads that want a look.
 void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, RemeshResult& result) {
   const RemeshReport& report = result.report;
   std::vector<std::string>& warnings = result.report.warnings;
   if (std::abs(report.quads / run.wanted - 1) > kCountTolerance) warnings.push_back(count_warning(report, run.wanted));
   if (report.features_given_way > 0)
-    warnings.push_back(std::to_string(report.features_given_way) +
-                       " curves of edges by angle gave way to the number of quads, to others on top of them, or to valid "
+    warnings.push_back(counted(report.features_given_way, "curve") +
+                       " of edges by angle gave way to the number of quads, to others on top of them, or to valid "
                        "quads: more quads, or marks, keep them");
   if (report.marks_given_way > 0)
-    warnings.push_back(
-        std::to_string(report.marks_given_way) +
-        " curves of marked edges gave way to valid quads: more quads, or fewer marks beside each other, keep them");
+    warnings.push_back(counted(report.marks_given_way, "curve") +
+                       " of marked edges gave way to valid quads: more quads, or fewer marks beside each other, keep them");
   if (const std::string raised = sharp_angle_warning(run); !raised.empty()) warnings.push_back(raised);
   const int lone = run.options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)
-    warnings.push_back(std::to_string(lone) + " quads lie alone between two features: too narrow there for two rows");
+    warnings.push_back(counted(lone, "quad") + (lone == 1 ? " lies" : " lie") +
+                       " alone between two features: too narrow there for two rows");
   if (report.flawed_quads > 0) {
     const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
-    warnings.push_back(std::to_string(report.flawed_quads) + " quads point against the surface or have no area" +
-                       (gave_up ? "; more tries would have taken too long" : ""));
+    warnings.push_back(flawed_warning(report, gave_up));
   }
   for (std::string& warning : warnings_of(report.curve_counts)) warnings.push_back(std::move(warning));
   if (run.images > 1)
@@ -307,6 +321,10 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   std::vector<ComponentResult> parts = remesh_components(run, *whole, clock);
   const GuidedEdges guided = join_components(run, parts, *whole, clock, result);
   report.curve_counts = run.counts.records();
+  if (report.flawed_quads > 0 && run.images == 1) {
+    report.flawed_faces = flawed_quads(result.mesh, *whole, least_agreement(*whole), run.context.threads);
+    report.flawed_quads = std::max(report.flawed_quads, static_cast<int>(report.flawed_faces.size()));
+  }
   add_warnings(run, parts, result);
   if (run.images > 1) {
     const std::vector<std::string> violations = violations_of(result.mesh);

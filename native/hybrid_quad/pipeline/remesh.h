@@ -151,6 +151,7 @@ struct RemeshReport {
   int marks_given_way = 0;  ///< curves of marked edges that gave way to valid quads
   double sharp_angle_used = 0;           ///< degrees above which edges by angle were looked at, the most of all components; 0: none were
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
+  std::vector<int> flawed_faces;  ///< those of the result that are so beyond doubt; with mirror images none are named
   int extra_passes = 0;                  ///< passes over components beyond the first, to get rid of flawed quads
   EdgeLoopSummary edge_loops;
   double scaled_jacobian_mean = 0, scaled_jacobian_p1 = 0, scaled_jacobian_min = 0;
