@@ -7,6 +7,7 @@
 #include "hybrid_quad/features/crease_clarity.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/features/parting_angle.h"
+#include "hybrid_quad/features/rounds.h"
 #include "hybrid_quad/features/small_facets.h"
 
 namespace hybrid_quad {
@@ -25,30 +26,24 @@ constexpr double kDoubt = 8;              ///< no set is trusted of which this p
 constexpr double kRoundShare = 0.4;       ///< what rounds need of the minimum length: a bit more than one edge of a quad,
 constexpr double kSureRound = 0.9;        ///< where this part of them is clear,
 constexpr double kRoundSight = 1 / (4 * 3.14159265358979323846);  ///< seen from half their radius away, of their length
-constexpr int kRoundEdges = 8;            ///< least number of a round's edges,
-constexpr double kRoundTurn = 60;         ///< and the most degrees that it turns by at a vertex
 constexpr double kReachShare = 0.28;      ///< least reach of a set, of the minimum length: nearly that of a circle that long
 
 class FeatureDetector {
  public:
   FeatureDetector(const TriangleMesh& mesh, const FeatureOptions& options)
       : mesh_(mesh), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
-        round_(mesh.halfedge_count(), -1), weight_(mesh.halfedge_count(), 1.0) {}
+        weight_(mesh.halfedge_count(), 1.0) {}
 
   void mark_given_edges();
   void mark_by_angle(const RunContext& context);
   void continue_chains(const RunContext& context);
-  void find_rounds();
   void weigh_edges(const RunContext& context);
   void drop_noise();
   std::vector<char> result() const;
-  int rounds_left_out() const {
-    return static_cast<int>(std::count_if(rounds_.begin(), rounds_.end(), [](const Round& round) { return round.is_too_small; }));
-  }
+  int rounds_left_out() const { return static_cast<int>(std::count(is_too_small_.begin(), is_too_small_.end(), 1)); }
   double limit() const { return limit_; }  ///< degrees above which edges were taken by angle; 0: none were
 
  private:
-  double length_if_round(int start, std::vector<int>& ring) const;
   void drop_short_sets();
   void drop_unclear_branches();
   void drop_loose_ends();
@@ -83,12 +78,8 @@ class FeatureDetector {
   const FeatureOptions& options_;
   std::vector<char> marked_, by_angle_;
   double limit_ = 0;
-  struct Round {
-    double length = 0;
-    bool is_too_small = false;
-  };
-  std::vector<Round> rounds_;
-  std::vector<int> round_;  ///< 3 #F: the round that an edge is of; -1: of none
+  Rounds rounds_;  ///< of the edges by angle
+  std::vector<char> is_too_small_;  ///< by round
   std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
   double noise_share_ = 0;      ///< of the length of all edges by angle
   std::vector<Vector3> normal_;
@@ -248,50 +239,11 @@ std::vector<int> FeatureDetector::connected_sets(const Measure& measure, std::ve
   return parent;
 }
 
-/// The length of the closed curve by angle through an edge, if it has many edges, meets no other and goes around evenly; else 0.
-/// \param ring  becomes its half-edges
-double FeatureDetector::length_if_round(int start, std::vector<int>& ring) const {
-  const double least_cosine = std::cos(kRoundTurn * kDegree);
-  ring.assign(1, start);
-  double sum = length(start);
-  int v = mesh_.to(start);
-  Vector3 direction = mesh_.edge_vector(start);
-  for (;;) {
-    if (feature_degree(v) != 2) return 0;
-    int next = -1;
-    visit_edges_at(v, [&](int h) {
-      if (by_angle_[h] && !marked_[h] && h != ring.back() && opposite_or_self(h) != ring.back()) next = h;
-    });
-    if (next < 0) return 0;
-    const bool is_forward = mesh_.from(next) == v;
-    const Vector3 onward = (is_forward ? 1.0 : -1.0) * mesh_.edge_vector(next);
-    if (direction.dot(onward) < least_cosine * direction.norm() * onward.norm()) return 0;
-    if (next == start || opposite_or_self(next) == start) return static_cast<int>(ring.size()) < kRoundEdges ? 0 : sum;
-    ring.push_back(next);
-    sum += length(next);
-    direction = onward;
-    v = is_forward ? mesh_.to(next) : mesh_.from(next);
-  }
-}
-
-/// Rims of holes and pins: no chance makes closed curves of many edges that go around evenly, however small they are.
-void FeatureDetector::find_rounds() {
-  std::vector<char> seen(mesh_.halfedge_count(), 0);
-  std::vector<int> ring;
-  for (int h = 0; h < mesh_.halfedge_count(); ++h) {
-    if (seen[h] || !by_angle_[h] || marked_[h]) continue;
-    const double sum = length_if_round(h, ring);
-    for (const int e : ring) {
-      set(seen, e, 1);
-      if (sum > 0) round_[e] = round_[opposite_or_self(e)] = static_cast<int>(rounds_.size());
-    }
-    if (sum > 0) rounds_.push_back({sum});
-  }
-}
-
 /// On a sculpt or scan, edges bend by chance, or because triangles are as large as the radius of a ridge.
 void FeatureDetector::weigh_edges(const RunContext& context) {
   if (std::find(by_angle_.begin(), by_angle_.end(), 1) == by_angle_.end()) return;
+  rounds_ = find_rounds(mesh_, by_angle_, marked_);
+  is_too_small_.assign(rounds_.length.size(), 0);
   const std::vector<char> barriers = result();
   const std::vector<char> in_facet = small_facets(mesh_, normal_, barriers, kQuadShare * options_.minimum_length);
   CreaseClarity clarity(mesh_, normal_, barriers);
@@ -299,8 +251,9 @@ void FeatureDetector::weigh_edges(const RunContext& context) {
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
     if ((h & 0xfff) == 0) context.checkpoint(0.4 + 0.2 * h / mesh_.halfedge_count());
     if (!by_angle_[h] || marked_[h] || !stands_for_edge(h)) continue;
-    const bool fences_facet = round_[h] < 0 && (in_facet[h / 3] || in_facet[mesh_.opposite(h) / 3]);
-    const double sight = round_[h] >= 0 ? std::min(kRoundSight * rounds_[round_[h]].length, side) : side;
+    const int round = rounds_.of_halfedge[h];
+    const bool fences_facet = round < 0 && (in_facet[h / 3] || in_facet[mesh_.opposite(h) / 3]);
+    const double sight = round >= 0 ? std::min(kRoundSight * rounds_.length[round], side) : side;
     const double weight = fences_facet ? 0 : std::clamp((clarity(h, sight) - kNoClarity) / (kFullClarity - kNoClarity), 0.0, 1.0);
     weight_[h] = weight_[opposite_or_self(h)] = weight;
   }
@@ -334,13 +287,14 @@ void FeatureDetector::drop_short_sets() {
     if (!by_angle_[h]) continue;
     const int s = set_of[mesh_.from(h)];
     const double doubt = std::clamp(kDoubt * (1 - clear_length[s] / set_length[s]), noise_share_ * noise_share_, 1.0);
-    const bool is_sure_round = round_[h] >= 0 && clear_length[s] > kSureRound * set_length[s];
+    const int round = rounds_.of_halfedge[h];
+    const bool is_sure_round = round >= 0 && clear_length[s] > kSureRound * set_length[s];
     const double enough = (is_sure_round ? kRoundShare : 1.0) * least;
     const bool is_short = clear_length[s] < enough * (1 + kNoiseFactor * noise_share_ * doubt);
     const bool is_clump = !has_given[s] && reach[s] < kReachShare * enough;
     if (!is_short && !is_clump) continue;
     by_angle_[h] = 0;
-    if (is_sure_round) rounds_[round_[h]].is_too_small = true;
+    if (is_sure_round) is_too_small_[round] = 1;
   }
 }
 
@@ -443,7 +397,6 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
   detector.mark_by_angle(context);
   detector.continue_chains(context);
   if (options.minimum_length > 0) {
-    detector.find_rounds();
     detector.weigh_edges(context);
     detector.drop_noise();
   }
