@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace hybrid_quad {
@@ -121,11 +122,17 @@ bool ShapeDescent::move(int v, double step) {
   }
   piece_.put(v, here);
   if (better.empty()) return false;
-  const int flaws = flaws_at(v, std::numeric_limits<int>::max());
   std::stable_sort(better.begin(), better.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::optional<int> flaws;  // where v is; mostly a place without any is found before it matters
   for (const auto& [there, place] : better) {
     piece_.put(v, place);
-    if (flaws_at(v, flaws + 1) <= flaws) return true;
+    if (flaws_at(v, 1) == 0) return true;
+    if (!flaws) {
+      piece_.put(v, here);
+      flaws = flaws_at(v, std::numeric_limits<int>::max());
+      piece_.put(v, place);
+    }
+    if (flaws_at(v, *flaws + 1) <= *flaws) return true;
   }
   piece_.put(v, here);
   return false;
