@@ -736,10 +736,7 @@ TEST(EditMesh, UndoRestoresEverything) {
   EditMesh mesh(quads, surface.mesh, surface.features);
   const auto incident = [&] {
     std::vector<std::vector<int>> lists;
-    for (int v = 0; v < mesh.vertex_count(); ++v) {
-      lists.push_back(mesh.quads_at(v));
-      std::sort(lists.back().begin(), lists.back().end());
-    }
+    for (int v = 0; v < mesh.vertex_count(); ++v) lists.push_back(mesh.quads_at(v));
     return lists;
   };
   const auto before = incident();
@@ -751,6 +748,95 @@ TEST(EditMesh, UndoRestoresEverything) {
   mesh.undo_to(mark);
   EXPECT_EQ(incident(), before);
   for (int q = 0; q < mesh.quad_count(); ++q) EXPECT_EQ(mesh.quad(q), quads.quads[q]);
+}
+
+/// Quads of all valences on a unit cube, and a feature along each of its edges.
+EditMesh muddled_cube(const Surface& surface) {
+  QuadMesh quads = cube(4);
+  bind(quads, surface);
+  EditMesh mesh(quads, surface.mesh, surface.features);
+  std::mt19937 random(7);
+  for (int made = 0; made < 25;) {
+    const Move move{static_cast<Move::Kind>(random() % 3), static_cast<int>(random() % mesh.quad_count()), static_cast<int>(random() % 4)};
+    Changed changed;
+    if (!may_move(mesh, move, &changed)) continue;
+    make_move(mesh, move);
+    ++made;
+  }
+  mesh.forget_log();
+  return mesh;
+}
+
+TEST(QuadMoves, CostOfAMoveIsWhatTheWholeMeshCostsMoreAfterIt) {
+  const Surface surface(test::box(4));
+  EditMesh mesh = muddled_cube(surface);
+  const auto whole_cost = [&mesh] {
+    double sum = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) sum += valence_cost(mesh, v);
+    return sum;
+  };
+  const double before = whole_cost();
+  std::array<int, 4> tried{}, at_features{};
+  for (int q = 0; q < mesh.quad_count(); ++q)
+    for (const auto kind : {Move::kCollapse, Move::kCollapseAndMerge, Move::kRotateBack, Move::kRotateForth})
+      for (int corner = 0; corner < 4; ++corner) {
+        const Move move{kind, q, corner};
+        Changed changed;
+        if (!may_move(mesh, move, &changed)) continue;
+        const double cost = cost_of_move(mesh, move, changed);
+        const std::size_t mark = mesh.mark();
+        make_move(mesh, move);
+        EXPECT_EQ(cost, whole_cost() - before) << "kind " << static_cast<int>(kind) << ", quad " << q << ", corner " << corner;
+        mesh.undo_to(mark);
+        ++tried[kind];
+        at_features[kind] += std::any_of(changed.vertex.begin(), changed.vertex.end(),
+                                         [&](int v) { return v >= 0 && !mesh.feature_links(v).empty(); });
+      }
+  for (const int number : tried) EXPECT_GT(number, 0);
+  for (const int kind : {Move::kCollapse, Move::kRotateBack, Move::kRotateForth}) EXPECT_GT(at_features[kind], 0);
+}
+
+TEST(SequenceMemory, KnowsAVertexUntilQuadsNearItChange) {
+  const Surface surface(test::flat_grid(10, 10));
+  QuadMesh quads = sheet(24, 24);
+  bind(quads, surface);
+  EditMesh mesh(quads, surface.mesh, surface.features);
+  constexpr int kDepth = 2;
+  const int v = 12 * 25 + 12, near = quads.quads[10 * 24 + 14][0], far = 20 * 24 + 20;
+  SequenceMemory memory;
+  ASSERT_EQ(memory.recall(mesh, v, kDepth), nullptr);
+  memory.remember(v, {17, {}});
+  ASSERT_NE(memory.recall(mesh, v, kDepth), nullptr);
+  EXPECT_EQ(memory.recall(mesh, v, kDepth)->trials, 17);
+  const Move elsewhere{Move::kRotateBack, far, 0}, beside{Move::kRotateBack, mesh.quads_at(near)[0], 0};
+  make_move(mesh, elsewhere);
+  EXPECT_NE(memory.recall(mesh, v, kDepth), nullptr);
+  const std::size_t mark = mesh.mark();
+  make_move(mesh, beside);
+  mesh.undo_to(mark);
+  EXPECT_NE(memory.recall(mesh, v, kDepth), nullptr) << "what was undone is as before";
+  make_move(mesh, beside);
+  EXPECT_EQ(memory.recall(mesh, v, kDepth), nullptr);
+}
+
+TEST(SequenceSearch, FindsTheSameFromMemory) {
+  const Surface surface(test::box(4));
+  EditMesh mesh = muddled_cube(surface);
+  constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5, 3};
+  SequenceMemory memory;
+  const auto run = [&](SequenceMemory* of) {
+    SequenceSearch search(mesh, 80, of);
+    std::vector<std::vector<double>> costs;
+    for (int v = 0; v < mesh.vertex_count() && !search.exhausted(); ++v) {
+      costs.emplace_back();
+      for (const Sequence& sequence : search.run_around(v, kLimits)) costs.back().push_back(sequence.cost);
+    }
+    return costs;
+  };
+  const auto without = run(nullptr), first = run(&memory), second = run(&memory);
+  EXPECT_EQ(without, first);
+  EXPECT_EQ(first, second);
+  EXPECT_TRUE(std::any_of(first.begin(), first.end(), [](const auto& costs) { return !costs.empty(); }));
 }
 
 }  // namespace

@@ -266,7 +266,8 @@ TEST(EditMesh, LockedQuadsStayAsTheyAre) {
     }
     piece.bind_all();
     Smoother smoother(piece, SmootherOptions{});
-    improve_valences(piece, smoother, RunContext{});
+    SequenceMemory memory;
+    improve_valences(piece, smoother, memory, RunContext{});
     smoother.smooth(5, RunContext{});
     const bool same = piece.mesh.alive(44) && piece.mesh.quad(44) == first && piece.mesh.alive(45) && piece.mesh.quad(45) == second;
     EXPECT_EQ(same, lock);

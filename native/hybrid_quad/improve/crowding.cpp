@@ -71,11 +71,7 @@ bool collapse_cheaper_diagonal(Workpiece& piece, int q, double most_cost) {
     const Move move{Move::kCollapse, q, corner};
     Changed changed;
     if (!may_move(piece.mesh, move, &changed)) continue;
-    const double before = changed.cost(piece.mesh);
-    const std::size_t mark = piece.mesh.mark();
-    make_move(piece.mesh, move);
-    const double cost = changed.cost(piece.mesh) - before;
-    piece.mesh.undo_to(mark);
+    const double cost = cost_of_move(piece.mesh, move, changed);
     if (cost <= best_cost) {
       best_cost = cost;
       best = move;

@@ -137,12 +137,15 @@ void EditMesh::replace(int q, const Quad& corners, bool is_alive) {
   if (alive_[q])
     for (const int v : quads_[q]) {
       auto& list = incident_[v];
-      list.erase(std::find(list.begin(), list.end(), q));
+      list.erase(std::lower_bound(list.begin(), list.end(), q));
     }
   quads_[q] = corners;
   alive_[q] = is_alive;
   if (is_alive)
-    for (const int v : corners) incident_[v].push_back(q);
+    for (const int v : corners) {
+      auto& list = incident_[v];
+      list.insert(std::lower_bound(list.begin(), list.end(), q), q);
+    }
 }
 
 int EditMesh::add_vertex(const Vector3& position, int region) {

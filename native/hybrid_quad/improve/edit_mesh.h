@@ -37,7 +37,7 @@ class EditMesh {
   int live_quads() const { return static_cast<int>(std::count(alive_.begin(), alive_.end(), 1)); }
   bool alive(int q) const { return alive_[q] != 0; }
   const Quad& quad(int q) const { return quads_[q]; }
-  const std::vector<int>& quads_at(int v) const { return incident_[v]; }
+  const std::vector<int>& quads_at(int v) const { return incident_[v]; }  ///< ascending, whatever was done and undone
   int valence(int v) const { return static_cast<int>(incident_[v].size()); }
   VertexKind kind(int v) const { return kind_[v]; }
   bool is_free(int v) const { return kind_[v] == VertexKind::kFree; }

@@ -27,15 +27,16 @@ namespace {
 int edit_connectivity(Workpiece& piece, Smoother& smoother, const RunContext& context) {
   constexpr int kRounds = 4, kSweeps = 5;
   int moves = 0;
+  SequenceMemory at_features, at_irregular;
   for (int round = 0; round < kRounds; ++round) {
     const int removed = remove_crowded(piece, context);
     if (round > 0 && removed == 0) break;
     moves += removed;
     spread_crowded(piece, context);
     smoother.smooth(kSweeps, context);
-    moves += straighten_features(piece, smoother, context);
+    moves += straighten_features(piece, smoother, at_features, context);
     moves += open_straight_corners(piece, smoother, context);
-    moves += improve_valences(piece, smoother, context);
+    moves += improve_valences(piece, smoother, at_irregular, context);
     moves += requadrangulate_patches(piece, smoother, context);
   }
   return moves;

@@ -11,8 +11,13 @@ namespace {
 
 constexpr double kStraight = 140 * M_PI / 180;
 
+/// So many quads more in the sector of `quad` at a vertex.
+struct SectorChange {
+  int quad = -1, quads = 0;
+};
+
 /// Quads of the sector that begins at the feature edge to `start`, counterclockwise; 0 where no quad is there.
-int sector_size(const EditMesh& mesh, int v, int start) {
+int sector_size(const EditMesh& mesh, int v, int start, SectorChange change = {}) {
   int q = -1;
   // From the end with fewer quads: many features can meet in a vertex, and its sectors are asked for one by one.
   for (const int other : mesh.quads_at(mesh.valence(start) < mesh.valence(v) ? start : v)) {
@@ -21,7 +26,7 @@ int sector_size(const EditMesh& mesh, int v, int start) {
   }
   int count = 0;
   for (int left = mesh.valence(v); q >= 0 && left > 0; --left) {
-    ++count;
+    count += q == change.quad ? 1 + change.quads : 1;
     const int side = (mesh.corner_of(q, v) + 3) & 3;
     if (mesh.is_feature(v, mesh.quad(q)[side])) break;
     q = mesh.across(q, side);
@@ -133,10 +138,8 @@ void rotate(EditMesh& mesh, const Move& move) {
   mesh.set_quad(h.other, second, true);
 }
 
-}  // namespace
-
-double valence_cost(const EditMesh& mesh, int v) {
-  const int n = mesh.valence(v);
+double valence_cost(const EditMesh& mesh, int v, SectorChange change) {
+  const int n = mesh.valence(v) + change.quads;
   if (n == 0) return 0;
   if (mesh.feature_links(v).empty()) {
     const double difference = n - 4;
@@ -144,7 +147,7 @@ double valence_cost(const EditMesh& mesh, int v) {
   }
   double cost = 0;
   for (const EditMesh::FeatureLink& link : mesh.feature_links(v)) {
-    const int size = sector_size(mesh, v, link.vertex);
+    const int size = sector_size(mesh, v, link.vertex, change);
     if (size == 0) continue;
     const double difference = size - link.ideal;
     cost += difference * difference;
@@ -152,6 +155,36 @@ double valence_cost(const EditMesh& mesh, int v) {
   }
   return cost;
 }
+
+/// What a collapse or a rotation changes at each vertex of `changed` lies in one sector, that of a quad it replaces there.
+std::array<SectorChange, 4> sector_changes(const EditMesh& mesh, const Move& move, const Changed& changed) {
+  if (move.kind == Move::kCollapse) {
+    const int gone = mesh.valence(changed.vertex[1]);
+    return {{{move.quad, gone - 2}, {move.quad, -gone}, {move.quad, -1}, {move.quad, -1}}};
+  }
+  const int other = mesh.across(move.quad, move.corner);
+  const auto quad_at = [&](int v) { return mesh.corner_of(move.quad, v) >= 0 ? move.quad : other; };
+  return {{{move.quad, -1}, {move.quad, -1}, {quad_at(changed.vertex[2]), 1}, {quad_at(changed.vertex[3]), 1}}};
+}
+
+double cost_of_merge(EditMesh& mesh, const Move& move, const Changed& changed) {
+  const auto cost = [&] {
+    double sum = 0;
+    for (const int v : changed.vertex)
+      if (v >= 0) sum += valence_cost(mesh, v, {});
+    return sum;
+  };
+  const double before = cost();
+  const std::size_t mark = mesh.mark();
+  make_move(mesh, move);
+  const double after = cost();
+  mesh.undo_to(mark);
+  return after - before;
+}
+
+}  // namespace
+
+double valence_cost(const EditMesh& mesh, int v) { return valence_cost(mesh, v, {}); }
 
 bool has_straight_corner(const EditMesh& mesh, int v) {
   if (mesh.valence(v) == 0) return false;
@@ -202,6 +235,14 @@ void make_move(EditMesh& mesh, const Move& move) {
     collapse(mesh, move);
   else
     rotate(mesh, move);
+}
+
+double cost_of_move(EditMesh& mesh, const Move& move, const Changed& changed) {
+  if (move.kind == Move::kCollapseAndMerge) return cost_of_merge(mesh, move, changed);
+  const std::array<SectorChange, 4> changes = sector_changes(mesh, move, changed);
+  double more = 0;
+  for (int i = 0; i < 4; ++i) more += valence_cost(mesh, changed.vertex[i], changes[i]) - valence_cost(mesh, changed.vertex[i], {});
+  return more;
 }
 
 }  // namespace hybrid_quad

@@ -24,15 +24,16 @@ struct Move {
   bool collapses() const { return kind == kCollapse || kind == kCollapseAndMerge; }
 };
 
-/// Vertices whose valence a move changed.
+/// Moves to be made one after the other.
+struct Sequence {
+  double cost = 0;  ///< change of the valence cost, and a little for every move
+  int length = 0;
+  std::array<Move, 3> moves{};
+};
+
+/// Vertices whose valence a move changes.
 struct Changed {
   std::array<int, 6> vertex{-1, -1, -1, -1, -1, -1};
-  double cost(const EditMesh& mesh) const {
-    double sum = 0;
-    for (const int v : vertex)
-      if (v >= 0) sum += valence_cost(mesh, v);
-    return sum;
-  }
 };
 
 /// The hexagon a b x y c d of two quads (b, c, d, a) and (c, b, x, y) whose common edge b c turns.
@@ -51,5 +52,7 @@ std::vector<int> merged_away(const EditMesh& mesh, const Move& move);
 bool may_move(const EditMesh& mesh, const Move& move, Changed* changed);
 /// \pre may_move
 void make_move(EditMesh& mesh, const Move& move);
+/// By how much the move raises the valence cost. The mesh stays as it is. \pre may_move, which gave `changed`
+double cost_of_move(EditMesh& mesh, const Move& move, const Changed& changed);
 
 }  // namespace hybrid_quad

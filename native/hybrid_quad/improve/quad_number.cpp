@@ -190,11 +190,7 @@ class TakingOut {
         sequence.moves[0] = {way < 2 ? Move::kCollapse : Move::kCollapseAndMerge, q, way & 1};
         Changed changed;
         if (!may_move(piece_.mesh, sequence.moves[0], &changed) || quads_ - removed_by(sequence) < number_.wanted) continue;
-        const double before = changed.cost(piece_.mesh);
-        const std::size_t mark = piece_.mesh.mark();
-        make_move(piece_.mesh, sequence.moves[0]);
-        sequence.cost = changed.cost(piece_.mesh) - before;
-        piece_.mesh.undo_to(mark);
+        sequence.cost = cost_of_move(piece_.mesh, sequence.moves[0], changed);
         found.push_back({cost_of(sequence), kWays * static_cast<std::size_t>(q) + way, sequence});
       }
     return found;

@@ -19,6 +19,17 @@ const std::vector<Sequence>& SequenceSearch::run(const std::vector<int>& seeds, 
   return best_;
 }
 
+const std::vector<Sequence>& SequenceSearch::run_around(int v, const SearchLimits& limits) {
+  if (!memory_) return run({v}, limits);
+  if (const SequenceMemory::Found* found = memory_->recall(mesh_, v, limits.depth)) {
+    effort_left_ -= found->trials;  // as if it had been searched for: memory must not change what is found later
+    return found->best;
+  }
+  const long long effort_before = effort_left_;
+  run({v}, limits);
+  return memory_->remember(v, {static_cast<int>(effort_before - effort_left_), best_}).best;
+}
+
 void SequenceSearch::extend(const std::vector<int>& seeds, const Sequence& so_far) {
   struct Candidate {
     Sequence sequence;
@@ -29,13 +40,8 @@ void SequenceSearch::extend(const std::vector<int>& seeds, const Sequence& so_fa
     if (--trials_left_ < 0) break;
     Changed changed;
     if (!may_move(mesh_, move, &changed)) continue;
-    const double before = changed.cost(mesh_);
-    const std::size_t mark = mesh_.mark();
-    make_move(mesh_, move);
-    const double after = changed.cost(mesh_);
-    mesh_.undo_to(mark);
     Sequence longer = so_far;
-    longer.cost += after - before + (move.kind == Move::kCollapse ? 0.02 : 0.01);
+    longer.cost += cost_of_move(mesh_, move, changed) + (move.kind == Move::kCollapse ? 0.02 : 0.01);
     longer.moves[longer.length++] = move;
     remember(longer);
     if (longer.length < limits_.depth && longer.cost < limits_.slack) candidates.push_back({longer, changed});

@@ -1,19 +1,12 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "hybrid_quad/improve/quad_moves.h"
+#include "hybrid_quad/improve/sequence_memory.h"
 #include "hybrid_quad/improve/workpiece.h"
 
 namespace hybrid_quad {
-
-/// Moves to be made one after the other.
-struct Sequence {
-  double cost = 0;  ///< change of the valence cost, and a little for every move
-  int length = 0;
-  std::array<Move, 3> moves{};
-};
 
 /// How far a search goes.
 struct SearchLimits {
@@ -30,8 +23,9 @@ class SequenceSearch {
  public:
   /// \param effort  moves to try in all runs together, per quad of the mesh: a mesh that is bad everywhere must not cost
   ///                more than a good one by orders of magnitude
-  SequenceSearch(EditMesh& mesh, int effort)
-      : mesh_(mesh), effort_left_(kLeastEffort + static_cast<long long>(effort) * mesh.quad_count()) {}
+  /// \param memory  of the same mesh and limits, or null
+  SequenceSearch(EditMesh& mesh, int effort, SequenceMemory* memory = nullptr)
+      : mesh_(mesh), memory_(memory), effort_left_(kLeastEffort + static_cast<long long>(effort) * mesh.quad_count()) {}
 
   bool exhausted() const { return effort_left_ <= 0; }
   /// Counts one change on trial, relaxed and perhaps undone, as so many moves tried.
@@ -39,6 +33,8 @@ class SequenceSearch {
 
   /// The best sequences that begin at a quad around `seeds`, best first; the mesh is as before.
   const std::vector<Sequence>& run(const std::vector<int>& seeds, const SearchLimits& limits);
+  /// The same around one vertex, from memory where nothing has changed.
+  const std::vector<Sequence>& run_around(int v, const SearchLimits& limits);
 
  private:
   static constexpr int kLeastEffort = 20000, kEffortOfTrial = 100;
@@ -48,6 +44,7 @@ class SequenceSearch {
   void remember(const Sequence& sequence);
 
   EditMesh& mesh_;
+  SequenceMemory* memory_;
   long long effort_left_;
   SearchLimits limits_{};
   int trials_left_ = 0;

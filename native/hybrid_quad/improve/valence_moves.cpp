@@ -10,7 +10,7 @@ namespace {
 /// Tries the best sequences around v until one stays. \returns its length, 0 if none does
 int improve_around(Workpiece& piece, Smoother& smoother, SequenceSearch& search, int v, const SearchLimits& limits) {
   constexpr double kGoodEnough = 0.7;
-  const std::vector<Sequence> sequences = search.run({v}, limits);
+  const std::vector<Sequence> sequences = search.run_around(v, limits);
   for (const Sequence& sequence : sequences) {
     search.count_trial();
     Trial trial(piece, smoother, touched_by(piece, sequence));
@@ -22,9 +22,9 @@ int improve_around(Workpiece& piece, Smoother& smoother, SequenceSearch& search,
 
 }  // namespace
 
-int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+int straighten_features(Workpiece& piece, Smoother& smoother, SequenceMemory& memory, const RunContext& context) {
   constexpr SearchLimits kLimits{3, 30, 2.0, 6000, 6, 3};
-  SequenceSearch search(piece.mesh, 40);
+  SequenceSearch search(piece.mesh, 40, &memory);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
   for (int v = 0; v < n && !search.exhausted(); ++v) {
@@ -34,10 +34,10 @@ int straighten_features(Workpiece& piece, Smoother& smoother, const RunContext& 
   return moves;
 }
 
-int improve_valences(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+int improve_valences(Workpiece& piece, Smoother& smoother, SequenceMemory& memory, const RunContext& context) {
   constexpr SearchLimits kLimits{2, 3, 0.9, 400, 5, 3};
   constexpr int kPasses = 2;
-  SequenceSearch search(piece.mesh, 80);
+  SequenceSearch search(piece.mesh, 80, &memory);
   int moves = 0;
   const int n = piece.mesh.vertex_count();
   for (int pass = 0; pass < kPasses; ++pass) {
