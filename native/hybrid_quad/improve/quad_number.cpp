@@ -235,12 +235,15 @@ class PuttingIn {
     std::vector<Candidate<VertexOpening>> candidates = cheapest_openings();
     sort_cheapest_first(candidates);
     std::vector<char> is_changed(piece_.mesh.vertex_count(), 0);
+    const auto is_other = [&is_changed](int v) {  // than before this round, which adds vertices too
+      return v >= static_cast<int>(is_changed.size()) || is_changed[v] != 0;
+    };
     int made = 0;
     const int most = most_at_once(quads_, number_.wanted - quads_);
     for (const auto& [cost, id, opening] : candidates) {
       if (made >= most) break;
       const std::vector<int> touched = vertices_around(opening.vertex);
-      if (std::any_of(touched.begin(), touched.end(), [&](int v) { return is_changed[v] != 0; })) continue;
+      if (std::any_of(touched.begin(), touched.end(), is_other)) continue;
       if (!history_.may_try(id, touched)) continue;
       Trial trial(piece_, smoother_, touched, std::cref(measure_));
       open_vertex(piece_, opening);
