@@ -14,6 +14,7 @@
 #include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/mesh/segment_index.h"
 #include "support/meshes.h"
+#include "support/quad_moves.h"
 
 namespace hybrid_quad {
 namespace {
@@ -777,21 +778,16 @@ TEST(QuadMoves, CostOfAMoveIsWhatTheWholeMeshCostsMoreAfterIt) {
   };
   const double before = whole_cost();
   std::array<int, 4> tried{}, at_features{};
-  for (int q = 0; q < mesh.quad_count(); ++q)
-    for (const auto kind : {Move::kCollapse, Move::kCollapseAndMerge, Move::kRotateBack, Move::kRotateForth})
-      for (int corner = 0; corner < 4; ++corner) {
-        const Move move{kind, q, corner};
-        Changed changed;
-        if (!may_move(mesh, move, &changed)) continue;
-        const double cost = cost_of_move(mesh, move, changed);
-        const std::size_t mark = mesh.mark();
-        make_move(mesh, move);
-        EXPECT_EQ(cost, whole_cost() - before) << "kind " << static_cast<int>(kind) << ", quad " << q << ", corner " << corner;
-        mesh.undo_to(mark);
-        ++tried[kind];
-        at_features[kind] += std::any_of(changed.vertex.begin(), changed.vertex.end(),
-                                         [&](int v) { return v >= 0 && !mesh.feature_links(v).empty(); });
-      }
+  for (const auto& [move, changed] : test::allowed_moves(mesh)) {
+    const double cost = cost_of_move(mesh, move, changed);
+    const std::size_t mark = mesh.mark();
+    make_move(mesh, move);
+    EXPECT_EQ(cost, whole_cost() - before) << "kind " << static_cast<int>(move.kind) << ", quad " << move.quad << ", corner " << move.corner;
+    mesh.undo_to(mark);
+    ++tried[move.kind];
+    at_features[move.kind] += std::any_of(changed.vertex.begin(), changed.vertex.end(),
+                                          [&mesh](int v) { return v >= 0 && !mesh.feature_links(v).empty(); });
+  }
   for (const int number : tried) EXPECT_GT(number, 0);
   for (const int kind : {Move::kCollapse, Move::kRotateBack, Move::kRotateForth}) EXPECT_GT(at_features[kind], 0);
 }

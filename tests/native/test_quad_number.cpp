@@ -10,6 +10,7 @@
 #include "hybrid_quad/quality/quality.h"
 #include "support/meshes.h"
 #include "support/quad_complexes.h"
+#include "support/quad_moves.h"
 
 namespace hybrid_quad {
 namespace {
@@ -123,22 +124,17 @@ TEST(QuadMoves, EveryAllowedMoveLeavesAValidMeshAndCanBeUndone) {
   covered.change_to(40);
   EditMesh mesh(covered.quads, covered.input, covered.features);
   int merged = 0;
-  for (int q = 0; q < mesh.quad_count(); ++q)
-    for (const auto kind : {Move::kCollapse, Move::kCollapseAndMerge, Move::kRotateBack, Move::kRotateForth})
-      for (int corner = 0; corner < 4; ++corner) {
-        const Move move{kind, q, corner};
-        Changed changed;
-        if (!may_move(mesh, move, &changed)) continue;
-        const std::size_t mark = mesh.mark();
-        const int removed = move.collapses() ? 1 + static_cast<int>(merged_away(mesh, move).size()) : 0;
-        make_move(mesh, move);
-        const QuadMesh after = mesh.extract();
-        EXPECT_TRUE(violations_of(after).empty());
-        EXPECT_EQ(static_cast<int>(after.quads.size()), covered.count() - removed);
-        merged += kind == Move::kCollapseAndMerge;
-        mesh.undo_to(mark);
-        EXPECT_EQ(mesh.extract().quads, covered.quads.quads);
-      }
+  for (const auto& [move, changed] : test::allowed_moves(mesh)) {
+    const std::size_t mark = mesh.mark();
+    const int removed = move.collapses() ? 1 + static_cast<int>(merged_away(mesh, move).size()) : 0;
+    make_move(mesh, move);
+    const QuadMesh after = mesh.extract();
+    EXPECT_TRUE(violations_of(after).empty());
+    EXPECT_EQ(static_cast<int>(after.quads.size()), covered.count() - removed);
+    merged += move.kind == Move::kCollapseAndMerge;
+    mesh.undo_to(mark);
+    EXPECT_EQ(mesh.extract().quads, covered.quads.quads);
+  }
   EXPECT_GT(merged, 0);
 }
 
