@@ -84,6 +84,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["split_sides"] = repairs.split_sides;
   result["refined_places"] = repairs.refined_places;
   result["reached_places"] = repairs.reached_places;
+  result["followed_creases"] = repairs.followed_creases;
   result["raised_places"] = repairs.raised_places;
   result["ended_searches"] = repairs.ended_searches;
   result["opened_flat_quads"] = repairs.opened_flat_quads;

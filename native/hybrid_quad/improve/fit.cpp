@@ -90,7 +90,7 @@ void put_back_where_worse(Workpiece& piece, const Smoother& smoother, const std:
 
 }  // namespace
 
-void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& context) {
+void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& context, const std::vector<char>* only) {
   constexpr double kLargestMove = 0.3;  // of an edge
   smoother.update_frames(false);
   const int n = piece.mesh.vertex_count();
@@ -106,6 +106,7 @@ void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& contex
   }
   const std::vector<Vector3> kept = piece.mesh.positions;
   for (int v = 0; v < n; ++v) {
+    if (only && !(*only)[v]) continue;
     if (!piece.mesh.is_free(v) || piece.mesh.is_pinned(v) || piece.mesh.valence(v) == 0 || !(weight[v] > 0)) continue;
     double area = 0;
     for (const int q : piece.mesh.quads_at(v)) area += smoother.frame(q).area;

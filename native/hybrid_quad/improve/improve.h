@@ -131,6 +131,17 @@ int raise_shapes(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph&
 int reach_cut_parts(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                     const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
 
+/// Where the input bends by more than the sharp angle along edges that are no features (single ones, those on rough surfaces, those that gave
+/// way): moves free vertices over the surface so that sides of quads come to lie along them, as far as the quads bear it. Where no side is
+/// within .15 edge lengths the vertices of four rings relax with pulls of the nearest sides to the edges, stronger and stronger. A place is
+/// kept only if no edge is farther there than the farthest was, a twentieth of what is more than near is gone (squares of distances, summed), no quad
+/// has lost more than .08 of its scaled Jacobian below .8, all together little, and no more are flawed or folded (docs/decisions/0048).
+/// \param sharp_angle  degrees  \param whole  as for improve_quads
+/// \returns places where sides are nearer now; 0: nothing has moved
+int follow_creases(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                   double sharp_angle, const ImproveOptions& options, const RunContext& context,
+                   const SurfaceIndex* whole = nullptr);
+
 /// The last resort against quads without area (below 1e-10 of the squared edge length): a vertex or two of each move by at most
 /// a ten thousandth of the edge length so that it has one, on the side to which the quads around it point. Free vertices go first,
 /// then those on curves; a corner that has to move is no input vertex any more (anchor -1).

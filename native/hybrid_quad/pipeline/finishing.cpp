@@ -113,6 +113,14 @@ int Finishing::reach_cut_parts(QuadMesh& mesh, const RunContext& context) const 
   return places;
 }
 
+int Finishing::follow_creases(QuadMesh& mesh, const RunContext& context) const {
+  if (!asked_.use_sharp_angle) return 0;
+  const int places =
+      hybrid_quad::follow_creases(mesh, plan_.mesh, plan_.features, *plan_.index, asked_.sharp_angle, improve_, context, &whole_);
+  if (places > 0 && asked_.symmetry.planes != 0) keep_clear_of_planes(mesh, asked_.symmetry.planes);
+  return places;
+}
+
 int Finishing::raise_shapes(QuadMesh& mesh, const RunContext& context) const {
   const int places = hybrid_quad::raise_shapes(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_,
                                                &ended_searches_, &futile_shapes_);

@@ -32,6 +32,8 @@ class Finishing {
   int refine_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// Tips that quads end short of (reach_cut_parts). \returns places reached
   int reach_cut_parts(QuadMesh& mesh, const RunContext& context) const;
+  /// Edges above the sharp angle that are no features (follow_creases). \returns places where sides are nearer to them
+  int follow_creases(QuadMesh& mesh, const RunContext& context) const;
   /// Places around quads of poor shape (raise_shapes). \returns their number
   int raise_shapes(QuadMesh& mesh, const RunContext& context) const;
   /// Sides of quads that no places put right (split_folded_quads). \returns their number

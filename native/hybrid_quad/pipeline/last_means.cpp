@@ -30,6 +30,7 @@ void LastMeans::improve_poor(ComponentResult& result) const {
   if (options_.improve && !keeps_numbers()) {
     const Finishing finishing = this->finishing();
     result.repairs.reached_places += apply_if_no_worse(&Finishing::reach_cut_parts, finishing, result);
+    result.repairs.followed_creases += apply_if_no_worse(&Finishing::follow_creases, finishing, result);
     result.repairs.raised_places += apply_if_no_worse(&Finishing::raise_shapes, finishing, result);
     const int splits = apply_if_no_worse(&Finishing::split_folded, finishing, result);
     result.repairs.split_sides += splits;

@@ -304,6 +304,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   split_sides += other.split_sides;
   refined_places += other.refined_places;
   reached_places += other.reached_places;
+  followed_creases += other.followed_creases;
   raised_places += other.raised_places;
   ended_searches += other.ended_searches;
   opened_flat_quads += other.opened_flat_quads;

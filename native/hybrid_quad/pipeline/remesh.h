@@ -91,6 +91,7 @@ struct RepairRecord {
   int split_sides = 0;           ///< sides of flawed or folded quads split in three, when all else was done
   int refined_places = 0;        ///< around flawed quads that were refined, where that was not enough
   int reached_places = 0;        ///< tips that quads had ended short of
+  int followed_creases = 0;  ///< places where edges of quads were brought to creases that are no features
   int raised_places = 0;         ///< around quads of poor shape that got a better one in the end
   int ended_searches = 0;  ///< for better shapes, with quads left, as each look at the surface takes long
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
