@@ -77,18 +77,21 @@ std::vector<Vector3> points_on_creases(const TriangleMesh& input, const FeatureG
   return points;
 }
 
-/// \returns the points, each with the side nearest to it; where very many are over one quad, some of them
+/// \returns the points, each with the side nearest to it; where very many are over one quad, the farthest of them
 std::vector<Witness> witnesses_of(const std::vector<Vector3>& points, const QuadMesh& quads, const EditMesh& mesh, const RunContext& context) {
-  constexpr int kMostInQuad = 60;
+  constexpr std::size_t kMostInQuad = 60;
   const std::vector<SurfacePoint> nearest = nearest_on_quads(points, quads, context);
-  std::vector<int> count(quads.quads.size(), 0), seen(quads.quads.size(), 0);
-  for (const SurfacePoint& place : nearest)
-    if (place.face >= 0) ++count[place.face];
+  std::vector<std::vector<Witness>> of_quad(quads.quads.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (const int quad = nearest[i].face; quad >= 0) of_quad[quad].push_back({points[i], nearest_side(mesh, points[i], quads.quads[quad])});
   std::vector<Witness> witnesses;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const int quad = nearest[i].face;
-    if (quad < 0 || seen[quad]++ % (1 + count[quad] / kMostInQuad) != 0) continue;
-    witnesses.push_back({points[i], nearest_side(mesh, points[i], quads.quads[quad])});
+  for (std::vector<Witness>& list : of_quad) {
+    const auto is_farther = [](const Witness& a, const Witness& b) { return a.side.distance > b.side.distance; };
+    if (list.size() > kMostInQuad) {
+      std::stable_sort(list.begin(), list.end(), is_farther);
+      list.resize(kMostInQuad);
+    }
+    witnesses.insert(witnesses.end(), list.begin(), list.end());
   }
   return witnesses;
 }
