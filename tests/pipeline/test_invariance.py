@@ -158,14 +158,17 @@ def test_the_order_makes_no_difference_to_models(name, sharp_angle):
     assert np.array_equal(result.vertices, usual.vertices)
 
 
-def test_a_model_turns_with_its_result():
+@pytest.mark.parametrize("sharp_angle", [40.0, None])
+def test_a_model_turns_with_its_result(sharp_angle):
     vertices, faces = model("c3d_spot_triangulated")
     vertices = vertices * (1 + 0.03 * np.sin(vertices @ [3.0, 1.0, 2.0]))[:, None]  # its two halves are alike otherwise
-    usual = hybrid_quad.remesh(vertices, faces, quads=1000, sharp_angle=None)
+    usual = hybrid_quad.remesh(vertices, faces, quads=1000, sharp_angle=sharp_angle)
     turn = rotation(4)
-    result = hybrid_quad.remesh(vertices @ turn.T, faces, quads=1000, sharp_angle=None)
+    result = hybrid_quad.remesh(vertices @ turn.T, faces, quads=1000, sharp_angle=sharp_angle)
     assert np.array_equal(result.quads, usual.quads)
     assert np.abs(result.vertices @ turn - usual.vertices).max() < 1e-3 * np.ptp(vertices)
+    followed = usual.report["repairs"]["followed_creases"]
+    assert followed > 0 if sharp_angle else followed == 0
 
 
 def dirty_sheet():
