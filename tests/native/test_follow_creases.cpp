@@ -55,11 +55,11 @@ struct RoofWithQuads {
     for (Vector3& p : quads.positions) p = roof.lifted(p.x(), p.y());
   }
 
-  int follow(int threads = 1, bool fit = false) {
+  int follow(int threads = 1, bool fit = false, double target_length = 1) {
     RunContext context;
     context.threads = threads;
     ImproveOptions options;
-    options.target_length = 1;
+    options.target_length = target_length;
     options.fit = fit;
     return follow_creases(quads, input, features, index, kSharp, options, context);
   }
@@ -152,6 +152,14 @@ TEST(FollowCreases, NeverFartherAndNeverMuchWorse) {
       EXPECT_GE(shape_quality(on.quads).scaled_jacobian_min, std::min(worst, 0.8) - 0.081) << offset << " " << slope;
       EXPECT_TRUE(flawed_quads(on.quads, on.index, {}).empty());
     }
+}
+
+TEST(FollowCreases, EndsWhereCreasesAreMuchLongerThanEdges) {
+  RoofWithQuads on({0.7, 0.4});
+  const QuadMesh before = on.quads;
+  on.follow(1, false, 1e-12);
+  EXPECT_EQ(on.quads.quads, before.quads);
+  EXPECT_TRUE(flawed_quads(on.quads, on.index, {}).empty());
 }
 
 TEST(FollowCreases, TheSameForAnyNumberOfThreads) {

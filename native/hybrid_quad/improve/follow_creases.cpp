@@ -76,17 +76,29 @@ SidePlace nearest_side(const EditMesh& mesh, const Vector3& p, const Vertices& v
   return from_first_quad(mesh, best);
 }
 
-/// Points along the edges above an angle (degrees) that are no features, each in the middle of a piece of about `step` or of a shorter edge.
-std::vector<Vector3> points_on_creases(const TriangleMesh& input, const FeatureGraph& features, double sharp_angle, double step) {
+/// Half-edges of the edges above an angle (degrees) that are no features.
+std::vector<int> creases_of(const TriangleMesh& input, const FeatureGraph& features, double sharp_angle) {
   const double most_cosine = std::cos(sharp_angle * EIGEN_PI / 180);
-  std::vector<Vector3> points;
+  std::vector<int> creases;
   for (int h = 0; h < 3 * input.face_count(); ++h) {
     const int opposite = input.opposite(h);
     if (opposite < h || features.is_feature(h) || input.normal(h / 3).dot(input.normal(opposite / 3)) > most_cosine) continue;
-    const Vector3& from = input.position(input.from(h));
-    const Vector3 along = input.position(input.to(h)) - from;
-    const int count = std::max(1, static_cast<int>(std::lround(along.norm() / step)));
-    for (int i = 0; i < count; ++i) points.push_back(from + (i + 0.5) / count * along);
+    creases.push_back(h);
+  }
+  return creases;
+}
+
+/// Points along edges, each in the middle of a piece of about `step` or of a shorter edge; of longer pieces where these would be more than
+/// `most`, as along needles that are much longer than the edges of quads.
+std::vector<Vector3> points_on(const std::vector<int>& creases, const TriangleMesh& input, double step, double most) {
+  const auto along = [&](int h) -> Vector3 { return input.position(input.to(h)) - input.position(input.from(h)); };
+  double total = 0;
+  for (const int h : creases) total += along(h).norm();
+  step = std::max(step, total / most);
+  std::vector<Vector3> points;
+  for (const int h : creases) {
+    const int count = std::max(1, static_cast<int>(std::lround(along(h).norm() / step)));
+    for (int i = 0; i < count; ++i) points.push_back(input.position(input.from(h)) + (i + 0.5) / count * along(h));
   }
   return points;
 }
@@ -304,8 +316,11 @@ class Following {
 int follow_creases(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index, double sharp_angle,
                    const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   if (quads.quads.empty() || !(options.target_length > 0)) return 0;
-  const std::vector<Vector3> points = points_on_creases(input, features, sharp_angle, kApart * options.target_length);
-  if (points.empty()) return 0;
+  const std::vector<int> creases = creases_of(input, features, sharp_angle);
+  if (creases.empty()) return 0;
+  constexpr double kMostPerQuad = 50;
+  const double most = kMostPerQuad * static_cast<double>(quads.quads.size());
+  const std::vector<Vector3> points = points_on(creases, input, kApart * options.target_length, most);
   Workpiece piece(quads, input, features, index);
   piece.h = options.target_length;
   std::vector<Witness> witnesses = witnesses_of(points, quads, piece.mesh, context);
