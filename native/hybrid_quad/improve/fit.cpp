@@ -53,14 +53,20 @@ QuadOffset offset_of(const Workpiece& piece, const QuadFrame& frame, int q) {
   return offset;
 }
 
-std::vector<QuadOffset> all_offsets(const Workpiece& piece, const Smoother& smoother, const RunContext& context) {
+bool has_any(const std::vector<char>* vertices, const EditMesh::Quad& quad) {
+  return vertices == nullptr || std::any_of(quad.begin(), quad.end(), [&](int v) { return (*vertices)[v] != 0; });
+}
+
+/// \param only  #V: of the quads at these; null: of all
+std::vector<QuadOffset> all_offsets(const Workpiece& piece, const Smoother& smoother, const RunContext& context,
+                                    const std::vector<char>* only) {
   constexpr int kChunk = 256;
   const int count = piece.mesh.quad_count(), chunks = (count + kChunk - 1) / kChunk;
   std::vector<QuadOffset> offsets(count);
   context.checkpoint();
   parallel_for(chunks, context.threads, [&](int c) {
     for (int q = c * kChunk; q < std::min(count, (c + 1) * kChunk); ++q)
-      if (piece.mesh.alive(q)) offsets[q] = offset_of(piece, smoother.frame(q), q);
+      if (piece.mesh.alive(q) && has_any(only, piece.mesh.quad(q))) offsets[q] = offset_of(piece, smoother.frame(q), q);
   });
   return offsets;
 }
@@ -94,7 +100,7 @@ void fit_to_input(Workpiece& piece, Smoother& smoother, const RunContext& contex
   constexpr double kLargestMove = 0.3;  // of an edge
   smoother.update_frames(false);
   const int n = piece.mesh.vertex_count();
-  const std::vector<QuadOffset> offsets = all_offsets(piece, smoother, context);
+  const std::vector<QuadOffset> offsets = all_offsets(piece, smoother, context, only);
   std::vector<double> sum(n, 0.0), weight(n, 0.0), quality(piece.mesh.quad_count(), 1.0);
   for (int q = 0; q < piece.mesh.quad_count(); ++q) {
     if (!piece.mesh.alive(q)) continue;

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "hybrid_quad/improve/fit.h"
 #include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/improve/nearest_side.h"
 #include "hybrid_quad/improve/point_pulls.h"
 #include "hybrid_quad/improve/shape_descent.h"
 #include "hybrid_quad/improve/smoother.h"
@@ -21,60 +21,11 @@ constexpr double kNear = 0.1;   ///< nearer a side need not be
 constexpr double kFar = 0.15;   ///< farther, and it is brought nearer
 constexpr double kApart = 0.1;  ///< points along creases
 
-/// Where a side of a quad is near a point.
-struct SidePlace {
-  int quad = -1, corner = 0;  ///< the side from this corner to the next
-  double share = 0;           ///< of the way along it
-  double distance = 0;        ///< scene units
-};
-
 /// A point on a crease and the side that is nearest.
 struct Witness {
   Vector3 point;
   SidePlace side;
 };
-
-/// \param least  squared distance of `best`
-void look_at_quad(const EditMesh& mesh, const Vector3& p, int q, SidePlace& best, double& least) {
-  constexpr double kLess = 1 - 1e-9, kMore = 1 + 1e-9;  // between them rounding alone decides
-  const EditMesh::Quad& v = mesh.quad(q);
-  for (int i = 0; i < 4; ++i) {
-    const Vector3 along = mesh.positions[v[(i + 1) & 3]] - mesh.positions[v[i]], to = p - mesh.positions[v[i]];
-    const double length = along.squaredNorm(), dot = to.dot(along);
-    const double share = dot <= 0 ? 0.0 : dot >= length ? 1.0 : dot / length;
-    const double distance = (to - share * along).squaredNorm();
-    if (distance > kMore * least) continue;
-    if (distance >= kLess * least && std::make_pair(q, i) > std::make_pair(best.quad, best.corner)) continue;
-    least = std::min(least, distance);
-    best.quad = q;
-    best.corner = i;
-    best.share = share;
-  }
-}
-
-/// The same, seen from the first of the quads at the side.
-SidePlace from_first_quad(const EditMesh& mesh, const SidePlace& place) {
-  const EditMesh::Quad& v = mesh.quad(place.quad);
-  const int a = v[place.corner], b = v[(place.corner + 1) & 3];
-  for (const int q : mesh.quads_at(a)) {
-    if (q >= place.quad) break;
-    const EditMesh::Quad& w = mesh.quad(q);
-    for (int i = 0; i < 4; ++i)
-      if (w[i] == b && w[(i + 1) & 3] == a) return {q, i, 1 - place.share, place.distance};
-  }
-  return place;
-}
-
-/// Of the quads at some vertices.
-template <class Vertices>
-SidePlace nearest_side(const EditMesh& mesh, const Vector3& p, const Vertices& vertices) {
-  SidePlace best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const int v : vertices)
-    for (const int q : mesh.quads_at(v)) look_at_quad(mesh, p, q, best, least);
-  best.distance = std::sqrt(least);
-  return from_first_quad(mesh, best);
-}
 
 /// Half-edges of the edges above an angle (degrees) that are no features.
 std::vector<int> creases_of(const TriangleMesh& input, const FeatureGraph& features, double sharp_angle) {
@@ -109,7 +60,8 @@ std::vector<Witness> witnesses_of(const std::vector<Vector3>& points, const Quad
   const std::vector<SurfacePoint> nearest = nearest_on_quads(points, quads, context);
   std::vector<std::vector<Witness>> of_quad(quads.quads.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (const int quad = nearest[i].face; quad >= 0) of_quad[quad].push_back({points[i], nearest_side(mesh, points[i], quads.quads[quad])});
+    if (const int quad = nearest[i].face; quad >= 0)
+      of_quad[quad].push_back({points[i], nearest_side(mesh, points[i], mesh.quad(quad))});
   std::vector<Witness> witnesses;
   for (std::vector<Witness>& list : of_quad) {
     const auto is_farther = [](const Witness& a, const Witness& b) { return a.side.distance > b.side.distance; };
@@ -210,7 +162,8 @@ class Following {
     for (const int i : site.witnesses) {
       const SidePlace& side = witnesses_[i].side;
       const EditMesh::Quad& v = piece_.mesh.quad(side.quad);
-      witnesses_[i].side = nearest_side(piece_.mesh, witnesses_[i].point, std::array<int, 2>{v[side.corner], v[(side.corner + 1) & 3]});
+      const std::array<int, 2> ends{v[side.corner], v[(side.corner + 1) & 3]};
+      witnesses_[i].side = nearest_side(piece_.mesh, witnesses_[i].point, ends);
     }
   }
 
@@ -252,7 +205,7 @@ class Following {
   }
 
   bool is_borne(const Site& site) const {
-    constexpr double kGood = 0.8, kLoss = 0.08, kMeanLoss = 0.03, kFairShape = 0.4;
+    constexpr double kGood = 0.8, kLoss = 0.08, kMeanLoss = 0.03;
     double lost = 0;
     for (const int q : site.quads) {
       const double now = smoother_.signed_quality(q);
@@ -260,8 +213,7 @@ class Following {
       lost += quality_[q] - now;
     }
     if (lost > kMeanLoss * static_cast<double>(site.quads.size())) return false;
-    const Shapes shapes = shapes_of(piece_.mesh, site.quads, measure_);
-    return shapes.flaws <= site.shapes.flaws && shapes.folded <= site.shapes.folded && shapes.worst >= std::min(site.shapes.worst, kFairShape);
+    return shapes_of(piece_.mesh, site.quads, measure_).are_kept_since(site.shapes);
   }
 
   /// Pulls get stronger as long as sides come nearer for it and quads bear it.

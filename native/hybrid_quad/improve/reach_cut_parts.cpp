@@ -170,7 +170,7 @@ class Reaching {
   /// \returns how far the quads are from the points then; as before where they have no shapes to be kept
   Distances relaxed(const Site& site, Pulling pull, long long& effort) {
     constexpr int kSteps = 8, kStepsToTell = 2, kSweeps = 2;
-    constexpr double kEps = 1e-3, kGain = 0.8, kGainToTell = 0.97, kFairShape = 0.4;
+    constexpr double kEps = 1e-3, kGain = 0.8, kGainToTell = 0.97;
     Distances now = site.before;
     for (int step = 0; step < kSteps && (step != kStepsToTell || now.excess < kGainToTell * site.before.excess); ++step) {
       (this->*pull)(site);
@@ -179,10 +179,7 @@ class Reaching {
       if (step + 1 == kStepsToTell || step + 1 == kSteps) now = distances_of(site.points, QuadSet(piece_.mesh, site.quads), site.edge);
     }
     if (now.largest > site.before.largest || now.excess > kGain * site.before.excess) return site.before;
-    const Shapes shapes = shapes_of(piece_.mesh, site.quads, measure_);
-    const bool are_kept = shapes.flaws <= site.shapes.flaws && shapes.folded <= site.shapes.folded &&
-                          shapes.worst >= std::min(site.shapes.worst, kFairShape);
-    return are_kept ? now : site.before;
+    return shapes_of(piece_.mesh, site.quads, measure_).are_kept_since(site.shapes) ? now : site.before;
   }
 
   std::vector<VertexPlace> places_of(const std::vector<int>& vertices) const {

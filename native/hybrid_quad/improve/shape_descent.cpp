@@ -41,6 +41,11 @@ bool Shapes::are_better_than(const Shapes& other) const {
   return folded < other.folded || lack < other.lack - kBetter;
 }
 
+bool Shapes::are_kept_since(const Shapes& before) const {
+  constexpr double kFairShape = 0.4;
+  return flaws <= before.flaws && folded <= before.folded && worst >= std::min(before.worst, kFairShape);
+}
+
 Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure& measure) {
   constexpr double kFair = 0.3;
   Shapes now;

@@ -27,6 +27,8 @@ struct Shapes {
   double worst = 1, lack = 0;  ///< the least scaled Jacobian; what all lack to a fair one, summed
 
   bool are_better_than(const Shapes& other) const;
+  /// Whether no more are flawed or folded than before, and the worst is fair (a scaled Jacobian of 0.4) or no worse.
+  bool are_kept_since(const Shapes& before) const;
 };
 
 Shapes shapes_of(const EditMesh& mesh, const std::vector<int>& quads, const FlawMeasure& measure);
