@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "hybrid_quad/pipeline/count_budget.h"
+#include "hybrid_quad/pipeline/remesh_components.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 #include "support/meshes.h"
 
@@ -210,6 +214,43 @@ TEST(CountBudget, WhatOneTakesTheOthersPay) {
   // But not all of it.
   budget.spend(0, 10 * wanted);
   EXPECT_GT(budget.factor(), 0.3);
+}
+
+std::vector<ComponentPlan> plans_of(const std::vector<double>& quads) {
+  std::vector<ComponentPlan> plans(quads.size());
+  for (std::size_t i = 0; i < quads.size(); ++i) plans[i].quads = quads[i];
+  return plans;
+}
+
+TEST(ComponentWaves, EveryPartOnceTheSmallestFirstAndNoMoreThanHalfOfWhatIsLeft) {
+  const std::vector<std::vector<double>> cases{{}, {7}, {3, 3}, {5, 1, 4, 2, 3}, {1000, 1, 1, 1, 1}, std::vector<double>(200, 5.0)};
+  for (const std::vector<double>& quads : cases) {
+    double left = std::accumulate(quads.begin(), quads.end(), 0.0), last = 0;
+    std::vector<int> seen;
+    for (const std::vector<int>& wave : component_waves(plans_of(quads))) {
+      ASSERT_FALSE(wave.empty());
+      double sum = 0;
+      for (const int i : wave) {
+        EXPECT_GE(quads[i], last);
+        last = quads[i];
+        sum += quads[i];
+        seen.push_back(i);
+      }
+      EXPECT_TRUE(wave.size() == 1 || sum <= 0.5 * left + 1e-9);
+      left -= sum;
+    }
+    std::sort(seen.begin(), seen.end());
+    std::vector<int> all(quads.size());
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(seen, all);
+  }
+}
+
+TEST(ComponentWaves, ManyPartsTakeFewWavesAndTheLargestComesLast) {
+  EXPECT_LE(component_waves(plans_of(std::vector<double>(200, 5.0))).size(), 9u);
+  const std::vector<std::vector<int>> waves = component_waves(plans_of({40, 1000, 2, 3, 30}));
+  EXPECT_EQ(waves.front(), (std::vector<int>{2, 3, 4, 0}));
+  EXPECT_EQ(waves.back(), (std::vector<int>{1}));
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <mutex>
 #include <numeric>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -54,6 +57,62 @@ TEST(Threads, EveryStageGivesTheSameBits) {
   EXPECT_EQ(many.mesh.positions, one.mesh.positions);
   EXPECT_EQ(many.mesh.quads, one.mesh.quads);
   EXPECT_EQ(many.report.hausdorff_percent, one.report.hausdorff_percent);
+}
+
+/// Spheres of different sizes beside each other.
+PolygonSoup some_spheres(int count) {
+  PolygonSoup soup;
+  for (int i = 0; i < count; ++i) {
+    const PolygonSoup sphere = soup_of(test::icosphere(2));
+    const int base = static_cast<int>(soup.positions.size());
+    for (const Vector3& p : sphere.positions) soup.positions.push_back((1 + 0.3 * i) * p + Vector3(0, 0, 10.0 * i));
+    soup.face_sizes.insert(soup.face_sizes.end(), sphere.face_sizes.begin(), sphere.face_sizes.end());
+    for (const int v : sphere.face_vertices) soup.face_vertices.push_back(base + v);
+  }
+  return soup;
+}
+
+TEST(Threads, PartsSideBySideGiveTheSameBits) {
+  const PolygonSoup soup = some_spheres(6);
+  const RemeshResult one = run(soup, 1, 900);
+  EXPECT_EQ(one.report.components, 6);
+  EXPECT_NEAR(one.report.quads, 900, 45);
+  for (const int threads : {2, 3, 8}) {
+    const RemeshResult many = run(soup, threads, 900);
+    EXPECT_EQ(many.mesh.positions, one.mesh.positions);
+    EXPECT_EQ(many.mesh.quads, one.mesh.quads);
+    ASSERT_EQ(many.report.stages.size(), one.report.stages.size());
+    for (std::size_t i = 0; i < one.report.stages.size(); ++i) EXPECT_EQ(many.report.stages[i].name, one.report.stages[i].name);
+  }
+}
+
+TEST(Threads, PartsSideBySideStopTogether) {
+  RemeshOptions options;
+  options.quads = 900;
+  RunContext context;
+  context.threads = 4;
+  std::atomic<int> polls{0};
+  context.stop_requested = [&] { return ++polls > 400; };
+  EXPECT_THROW(remesh(some_spheres(6), options, context), Cancelled);
+}
+
+TEST(Threads, ProgressOfPartsSideBySideIsTheirs) {
+  RunContext context;
+  context.threads = 4;
+  std::atomic<bool> is_sound{true};
+  std::mutex mutex;
+  double largest = 0;
+  context.on_progress = [&](const std::string&, double fraction) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    is_sound = is_sound && fraction >= 0 && fraction <= 1;
+    largest = std::max(largest, fraction);
+  };
+  RemeshOptions options;
+  options.quads = 900;
+  options.measure_distances = false;
+  remesh(some_spheres(6), options, context);
+  EXPECT_TRUE(is_sound);
+  EXPECT_GT(largest, 0.8);
 }
 
 /// Parents of the nodes of a forest, or -1.

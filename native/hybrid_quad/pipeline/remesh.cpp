@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 
 #include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/pipeline/component.h"
-#include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/pipeline/finishing.h"
 #include "hybrid_quad/pipeline/guided_input.h"
 #include "hybrid_quad/pipeline/limit_fit.h"
+#include "hybrid_quad/pipeline/remesh_components.h"
 #include "hybrid_quad/pipeline/run_plan.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
 
@@ -22,11 +21,6 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kCountTolerance = 0.1;  // off by more, a warning says so
-constexpr double kLeastOfPlan = 0.5;     // no component pays with all its shape for what others cost
-
-/// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
-constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
-constexpr double kWorkForMarks = 0.1;  // as much besides
 
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 /// \param guided  gets those of the component
@@ -91,59 +85,6 @@ int lone_quads(const QuadMesh& mesh) {
   return count;
 }
 
-/// Quads of a small component can have an area beside the component's other quads, and none beside all.
-void open_flat_quads_of(std::vector<ComponentResult>& parts, const SurfaceIndex& whole, int threads) {
-  double length = 0, quads = 0;
-  for (const ComponentResult& part : parts) {
-    const double count = static_cast<double>(part.mesh.quads.size());
-    length += count * mean_edge_length(part.mesh);
-    quads += count;
-  }
-  for (ComponentResult& part : parts) {
-    const int opened = open_flat_quads(part.mesh, length / quads, &whole, least_agreement(whole));
-    part.repairs.opened_flat_quads += opened;
-    if (opened > 0) part.flawed_quads = static_cast<int>(flawed_quads(part.mesh, whole, least_agreement(whole), threads).size());
-  }
-}
-
-std::vector<int> smallest_first(const std::vector<ComponentPlan>& plans) {
-  std::vector<int> order(plans.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return plans[a].quads < plans[b].quads; });
-  return order;
-}
-
-double share_of_area(const RunPlan& run, std::size_t component) { return run.components[component].mesh.total_area() / run.area; }
-
-/// The part of a run's progress that a component takes. \param done, share  of the area: remeshed before it, and its own
-RunContext context_of_component(const RunContext& run, double done, double share) {
-  RunContext context = run;
-  context.stage_begin = run.stage_begin + (0.04 + 0.93 * done) * (run.stage_end - run.stage_begin);
-  context.stage_end = context.stage_begin + 0.93 * share * (run.stage_end - run.stage_begin);
-  return context;
-}
-
-/// Remeshes the components, the smallest first: what they cost more or less than planned, the others pay or get.
-std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex& whole, StageClock& clock) {
-  std::vector<ComponentResult> parts(run.components.size());
-  CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
-  const double extra = kExtraWork + kExtraWorkPerQuad * run.wanted;
-  WorkBudget work{extra, kWorkForMarks * extra};
-  double done = 0;
-  for (const int i : smallest_first(run.plans)) {
-    ComponentPlan& plan = run.plans[i];
-    const double share = share_of_area(run, i), planned = plan.quads;
-    const RunContext context = context_of_component(run.context, done, share);
-    if (run.is_by_count) scale_plan(plan, budget.factor());
-    const double wanted = run.is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
-    parts[i] = remesh_component(plan, wanted, whole, run.wishes[i], run.guides, run.domain.options, work, clock, context);
-    budget.spend(planned, static_cast<double>(parts[i].mesh.quads.size()));
-    done += share;
-  }
-  open_flat_quads_of(parts, whole, run.context.threads);
-  return parts;
-}
-
 /// Vertices of the input that a component's vertices are; -1 for those that are none of it.
 std::vector<int> input_vertices_of(const RunPlan& run, std::size_t component, int input_vertex_count) {
   std::vector<int> input_vertex;
@@ -172,7 +113,7 @@ GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, c
         const RunContext context = run.context.in_stage("limit surface", 0.97, 0.97);
         const LimitFitReport fit =
             fit_component(parts[i], quads, plan.mesh, run.domain.options.symmetry.planes, whole, context);
-        add_fit(report.limit_fit, fit, share_of_area(run, i), surface_of(run).diagonal());
+        add_fit(report.limit_fit, fit, run.components[i].mesh.total_area() / run.area, surface_of(run).diagonal());
       });
       quads = with_images();
     }

@@ -3,6 +3,7 @@
 #include <any>
 #include <array>
 #include <map>
+#include <mutex>
 #include <set>
 #include <string>
 #include <utility>
@@ -41,13 +42,17 @@ class StageCache {
   template <class Make>
   auto recall(const Item& item, const Make& make) {
     using Result = decltype(make());
-    Known& known = results_[static_cast<int>(item.level)][{item.stage, item.part}];
-    if (known.result.has_value() && known.scale == item.scale) {
-      recalled_.insert(item.stage);
-      return std::any_cast<Result>(known.result);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const Known& known = known_of(item);
+      if (known.result.has_value() && known.scale == item.scale) {
+        recalled_.insert(item.stage);
+        return std::any_cast<Result>(known.result);
+      }
     }
     Result made = make();
-    known = {item.scale, made};
+    const std::lock_guard<std::mutex> lock(mutex_);
+    known_of(item) = {item.scale, made};
     return made;
   }
 
@@ -56,9 +61,12 @@ class StageCache {
     double scale = 0;
     std::any result;
   };
+  Known& known_of(const Item& item) { return results_[static_cast<int>(item.level)][{item.stage, item.part}]; }
+
   Keys keys_;
   std::array<std::map<std::pair<std::string, int>, Known>, kLevels> results_;
   std::set<std::string> recalled_;
+  std::mutex mutex_;  ///< components of a run get on side by side
 };
 
 /// What `make` gives, or gave. \param cache  may be null

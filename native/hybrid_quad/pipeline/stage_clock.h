@@ -7,7 +7,7 @@
 
 namespace hybrid_quad {
 
-/// Seconds and peak memory a stage, summed where a stage runs again (components, passes).
+/// Seconds and peak memory a stage, summed where a stage runs again (components, passes), side by side too.
 class StageClock {
  public:
   /// Runs `work` and books its time under `name`.
@@ -17,9 +17,14 @@ class StageClock {
     return work();
   }
 
+  /// Books what another clock measured.
+  void add(const StageClock& other);
+
   std::vector<StageRecord> records;
 
  private:
+  StageRecord& record_of(const std::string& name);
+
   class Booking {
    public:
     Booking(StageClock& clock, const std::string& name);
@@ -29,7 +34,7 @@ class StageClock {
 
    private:
     StageClock& clock_;
-    std::size_t index_;
+    const std::string name_;
     double begin_;
   };
 };

@@ -1,0 +1,147 @@
+#include "hybrid_quad/pipeline/remesh_components.h"
+
+#include <algorithm>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "hybrid_quad/base/helper_threads.h"
+#include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/count_budget.h"
+#include "hybrid_quad/pipeline/finishing.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+constexpr double kLeastOfPlan = 0.5;  // no component pays with all its shape for what others cost
+
+/// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
+constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
+constexpr double kWorkForMarks = 0.1;  // as much besides
+
+/// How far a run is whose components get on side by side.
+class CommonProgress {
+ public:
+  /// \param run  that has reached the components
+  explicit CommonProgress(const RunPlan& run) : run_(run.context) {
+    for (const Component& component : run.components) share_.push_back(component.mesh.total_area() / run.area);
+    done_.assign(share_.size(), 0.0);
+  }
+
+  /// The run's context for a component, on so many threads.
+  RunContext context_of(int component, int threads) {
+    RunContext context = run_;
+    context.threads = threads;
+    context.stage_begin = 0;
+    context.stage_end = 1;
+    if (run_.on_progress)
+      context.on_progress = [this, component](const std::string& stage, double fraction) { report(component, stage, fraction); };
+    return context;
+  }
+
+ private:
+  void report(int component, const std::string& stage, double fraction) {
+    constexpr double kBegin = 0.04, kEnd = 0.97;  // of the run
+    double whole = 0;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      done_[component] = std::max(done_[component], fraction);
+      for (std::size_t i = 0; i < share_.size(); ++i) whole += share_[i] * done_[i];
+    }
+    run_.on_progress(stage, run_.stage_begin + (kBegin + (kEnd - kBegin) * whole) * (run_.stage_end - run_.stage_begin));
+  }
+
+  const RunContext& run_;
+  std::vector<double> share_, done_;
+  std::mutex mutex_;
+};
+
+/// What one component of a wave is asked for and gives. Its budget is the wave's, as if it were alone there.
+struct Job {
+  int component;
+  double planned, wanted;
+  WorkBudget budget;
+  StageClock clock;
+  ComponentResult result;
+};
+
+/// Quads of a small component can have an area beside the component's other quads, and none beside all.
+void open_flat_quads_of(std::vector<ComponentResult>& parts, const SurfaceIndex& whole, int threads) {
+  double length = 0, quads = 0;
+  for (const ComponentResult& part : parts) {
+    const double count = static_cast<double>(part.mesh.quads.size());
+    length += count * mean_edge_length(part.mesh);
+    quads += count;
+  }
+  for (ComponentResult& part : parts) {
+    const int opened = open_flat_quads(part.mesh, length / quads, &whole, least_agreement(whole));
+    part.repairs.opened_flat_quads += opened;
+    if (opened > 0) part.flawed_quads = static_cast<int>(flawed_quads(part.mesh, whole, least_agreement(whole), threads).size());
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> component_waves(const std::vector<ComponentPlan>& plans) {
+  std::vector<int> order(plans.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return plans[a].quads < plans[b].quads; });
+  double left = 0;
+  for (const ComponentPlan& plan : plans) left += plan.quads;
+  std::vector<std::vector<int>> waves;
+  for (std::size_t i = 0; i < order.size();) {
+    std::vector<int> wave;
+    double quads = 0;
+    do {
+      quads += plans[order[i]].quads;
+      wave.push_back(order[i++]);
+    } while (i < order.size() && quads + plans[order[i]].quads <= 0.5 * left);
+    left -= quads;
+    waves.push_back(std::move(wave));
+  }
+  return waves;
+}
+
+std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex& whole, StageClock& clock) {
+  std::vector<ComponentResult> parts(run.components.size());
+  CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
+  const double extra = kExtraWork + kExtraWorkPerQuad * run.wanted;
+  WorkBudget work{extra, kWorkForMarks * extra};
+  CommonProgress progress(run);
+  for (const std::vector<int>& wave : component_waves(run.plans)) {
+    std::vector<Job> jobs;
+    for (auto i = wave.rbegin(); i != wave.rend(); ++i) {  // the largest first, that none is left to run alone
+      ComponentPlan& plan = run.plans[*i];
+      const double planned = plan.quads;
+      if (run.is_by_count) scale_plan(plan, budget.factor());
+      const double wanted = run.is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
+      jobs.push_back({*i, planned, wanted, work, {}, {}});
+    }
+    const int count = static_cast<int>(jobs.size());
+    const int together = run.context.on_snapshot ? 1 : std::min(count, run.context.threads);  // snapshots come in order
+    const int threads = run.context.threads / together;
+    parallel_for(count, together, [&](int j) {
+      Job& job = jobs[j];
+      const int i = job.component;
+      std::optional<HelperThreads> helpers;  // those of the run are busy with the wave
+      if (together > 1) helpers.emplace();
+      job.result = remesh_component(run.plans[i], job.wanted, whole, run.wishes[i], run.guides, run.domain.options, job.budget, job.clock,
+                                    progress.context_of(i, threads));
+    });
+    const WorkBudget before = work;
+    for (Job& job : jobs) {
+      clock.add(job.clock);
+      work.left -= before.left - job.budget.left;
+      work.for_marks -= before.for_marks - job.budget.for_marks;
+      budget.spend(job.planned, static_cast<double>(job.result.mesh.quads.size()));
+      parts[job.component] = std::move(job.result);
+    }
+  }
+  open_flat_quads_of(parts, whole, run.context.threads);
+  return parts;
+}
+
+}  // namespace hybrid_quad
