@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <optional>
 #include <vector>
 
 #include "hybrid_quad/base/helper_threads.h"
@@ -41,6 +42,20 @@ void parallel_chunks(int count, const RunContext& context, const Work& work, int
   parallel_for((count + chunk - 1) / chunk, context.threads, [&](int c) {
     each.checkpoint();
     work(c * chunk, std::min(count, (c + 1) * chunk));
+  });
+}
+
+/// Calls work(i, context) for i in [0, count), several at once, each on its share of the threads: for what has too little to share for all of
+/// them. One after the other where there are snapshots, which come in order.
+template <class Work>
+void side_by_side(int count, const RunContext& context, const Work& work) {
+  const int together = context.on_snapshot ? 1 : std::max(1, std::min(count, context.threads));
+  RunContext each = context;
+  each.threads = std::max(1, context.threads / together);
+  parallel_for(count, together, [&](int i) {
+    std::optional<HelperThreads> helpers;  // those of the caller are busy here
+    if (together > 1) helpers.emplace();
+    work(i, each);
   });
 }
 

@@ -1,9 +1,11 @@
 #include "hybrid_quad/pipeline/component.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/pipeline/last_means.h"
@@ -111,9 +113,15 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
           run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, context.in_stage(context.stage, 0, 0.9));
       return roomy;
     }
-    const RunContext with = context.in_stage(context.stage, 0, 0.45), without = context.in_stage(context.stage, 0.45, 0.9);
-    FirstPass full{planned, run_pass(planned, whole, wishes, guides, options, kSettings[0], clock, with)};
-    roomy.result = run_pass(roomy.plan, whole, wishes, guides, options, kSettings[0], clock, without);
+    FirstPass full{planned, {}};
+    std::array<StageClock, 2> clocks;
+    side_by_side(2, context.in_stage(context.stage, 0, 0.9), [&](int i, const RunContext& each) {
+      FirstPass& pass = i == 0 ? full : roomy;
+      RunContext own = each.in_stage(each.stage, 0.5 * i, 0.5 * (i + 1));
+      if (i > 0 && context.threads > 1) own.on_progress = nullptr;  // ahead of the other's
+      pass.result = run_pass(pass.plan, whole, wishes, guides, options, kSettings[0], clocks[i], own);
+    });
+    for (const StageClock& one : clocks) clock.add(one);
     return mean_shape(roomy.result.mesh) > mean_shape(full.result.mesh) + kBetter ? roomy : full;
   } catch (const InternalError&) {
     return std::nullopt;  // the passes that follow say what broke

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "hybrid_quad/base/helper_threads.h"
 #include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/finishing.h"
@@ -120,16 +118,11 @@ std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex&
       const double wanted = run.is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
       jobs.push_back({*i, planned, wanted, work, {}, {}});
     }
-    const int count = static_cast<int>(jobs.size());
-    const int together = run.context.on_snapshot ? 1 : std::min(count, run.context.threads);  // snapshots come in order
-    const int threads = run.context.threads / together;
-    parallel_for(count, together, [&](int j) {
+    side_by_side(static_cast<int>(jobs.size()), run.context, [&](int j, const RunContext& each) {
       Job& job = jobs[j];
       const int i = job.component;
-      std::optional<HelperThreads> helpers;  // those of the run are busy with the wave
-      if (together > 1) helpers.emplace();
       job.result = remesh_component(run.plans[i], job.wanted, whole, run.wishes[i], run.guides, run.domain.options, job.budget, job.clock,
-                                    progress.context_of(i, threads));
+                                    progress.context_of(i, each.threads));
     });
     const WorkBudget before = work;
     for (Job& job : jobs) {
