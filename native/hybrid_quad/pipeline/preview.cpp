@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "hybrid_quad/base/helper_threads.h"
+#include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/even_spread.h"
@@ -106,19 +108,21 @@ Preview preview(const PolygonSoup& soup, const RemeshOptions& options, bool with
   const std::shared_ptr<const SurfaceIndex> whole = with_quads ? index_of_whole(run) : nullptr;
   const Collector collector(run.frame, planes, out);
   const CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
-  double done = 0;
-  for (std::size_t i = 0; i < run.plans.size(); ++i) {
-    ComponentPlan& plan = run.plans[i];
-    if (run.is_by_count) scale_plan(plan, budget.factor());
-    const double share = plan.mesh.total_area() / run.area;
-    const RunContext part = run.context.in_stage("", 0.04 + 0.96 * done, 0.04 + 0.96 * (done + share));
-    ComponentPreview component =
-        preview_component(plan, plan.quads, whole.get(), run.wishes[i], run.guides, run.domain.options, clock, part);
+  if (run.is_by_count)
+    for (ComponentPlan& plan : run.plans) scale_plan(plan, budget.factor());
+  std::vector<ComponentPreview> found(run.plans.size());
+  std::vector<StageClock> clocks(run.plans.size());
+  CommonProgress progress(run.context, shares_of_area(run), 0.04, 1);
+  side_by_side(static_cast<int>(found.size()), run.context, [&](int i, const RunContext& each) {
+    found[i] = preview_component(run.plans[i], run.plans[i].quads, whole.get(), run.wishes[i], run.guides, run.domain.options,
+                                 clocks[i], progress.context_of(i, each));
+  });
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const ComponentPreview& component = found[i];
+    clock.add(clocks[i]);
     collector.add(component.surface, component.frames);
-    if (with_quads)
-      collector.add(whole_of(component.quads, run.components[i].mesh, run.marked[i].ends, run.domain.options));
+    if (with_quads) collector.add(whole_of(component.quads, run.components[i].mesh, run.marked[i].ends, run.domain.options));
     out.warnings.insert(out.warnings.end(), component.quads.warnings.begin(), component.quads.warnings.end());
-    done += share;
   }
   out.spread = spread_by_quads(out);
   out.wanted = run.wanted;

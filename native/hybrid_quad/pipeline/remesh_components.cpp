@@ -1,12 +1,11 @@
 #include "hybrid_quad/pipeline/remesh_components.h"
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/finishing.h"
 
@@ -19,43 +18,6 @@ constexpr double kLeastOfPlan = 0.5;  // no component pays with all its shape fo
 /// Of a WorkBudget, of which one component takes half: that is about a quarter of a minute, and another for ten thousand quads.
 constexpr double kExtraWork = 2.5e5, kExtraWorkPerQuad = 20;
 constexpr double kWorkForMarks = 0.1;  // as much besides
-
-/// How far a run is whose components get on side by side.
-class CommonProgress {
- public:
-  /// \param run  that has reached the components
-  explicit CommonProgress(const RunPlan& run) : run_(run.context) {
-    for (const Component& component : run.components) share_.push_back(component.mesh.total_area() / run.area);
-    done_.assign(share_.size(), 0.0);
-  }
-
-  /// The run's context for a component, on so many threads.
-  RunContext context_of(int component, int threads) {
-    RunContext context = run_;
-    context.threads = threads;
-    context.stage_begin = 0;
-    context.stage_end = 1;
-    if (run_.on_progress)
-      context.on_progress = [this, component](const std::string& stage, double fraction) { report(component, stage, fraction); };
-    return context;
-  }
-
- private:
-  void report(int component, const std::string& stage, double fraction) {
-    constexpr double kBegin = 0.04, kEnd = 0.97;  // of the run
-    double whole = 0;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      done_[component] = std::max(done_[component], fraction);
-      for (std::size_t i = 0; i < share_.size(); ++i) whole += share_[i] * done_[i];
-    }
-    run_.on_progress(stage, run_.stage_begin + (kBegin + (kEnd - kBegin) * whole) * (run_.stage_end - run_.stage_begin));
-  }
-
-  const RunContext& run_;
-  std::vector<double> share_, done_;
-  std::mutex mutex_;
-};
 
 /// What one component of a wave is asked for and gives. Its budget is the wave's, as if it were alone there.
 struct Job {
@@ -108,7 +70,7 @@ std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex&
   CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
   const double extra = kExtraWork + kExtraWorkPerQuad * run.wanted;
   WorkBudget work{extra, kWorkForMarks * extra};
-  CommonProgress progress(run);
+  CommonProgress progress(run.context, shares_of_area(run), 0.04, 0.97);
   for (const std::vector<int>& wave : component_waves(run.plans)) {
     std::vector<Job> jobs;
     for (auto i = wave.rbegin(); i != wave.rend(); ++i) {  // the largest first, that none is left to run alone
@@ -121,8 +83,8 @@ std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex&
     side_by_side(static_cast<int>(jobs.size()), run.context, [&](int j, const RunContext& each) {
       Job& job = jobs[j];
       const int i = job.component;
-      job.result = remesh_component(run.plans[i], job.wanted, whole, run.wishes[i], run.guides, run.domain.options, job.budget, job.clock,
-                                    progress.context_of(i, each.threads));
+      job.result = remesh_component(run.plans[i], job.wanted, whole, run.wishes[i], run.guides, run.domain.options, job.budget,
+                                    job.clock, progress.context_of(i, each));
     });
     const WorkBudget before = work;
     for (Job& job : jobs) {

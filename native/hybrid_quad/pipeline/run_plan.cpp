@@ -203,4 +203,10 @@ std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
   return recalled_index(run.context.cache, "whole", 0, surface_of(run), run.context.threads);
 }
 
+std::vector<double> shares_of_area(const RunPlan& run) {
+  std::vector<double> shares;
+  for (const Component& component : run.components) shares.push_back(component.mesh.total_area() / run.area);
+  return shares;
+}
+
 }  // namespace hybrid_quad
