@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/base/parallel.h"
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/improve/mesh_patch.h"
 #include "hybrid_quad/improve/shape_descent.h"
@@ -56,6 +57,7 @@ class FoldedSplitter {
     QuadMesh mesh;
     std::vector<int> moving;  ///< vertices
     Shapes shapes;
+    long long boxes_opened = 0;  ///< by the latest relaxation
   };
 
   static double shape_of(const QuadMesh& mesh, int q) {
@@ -150,6 +152,7 @@ class FoldedSplitter {
     std::optional<Trial> best;
     for (Trial& trial : trials) {
       relax(trial, DescentPlan{});
+      boxes_opened_ += trial.boxes_opened;
       if (is_worth_it(trial.shapes, before)) return trial;
       if (trial.shapes.flaws <= before.flaws && (!best || badness(trial) < badness(*best))) best = std::move(trial);
     }
@@ -186,27 +189,28 @@ class FoldedSplitter {
         Trial trial{splitter.split(split, path_of(mesh, piece, edge, split), &changed), start.moving, {}};
         if (trial.mesh.quads.size() > most) continue;
         for (int v = static_cast<int>(mesh.positions.size()); v < static_cast<int>(trial.mesh.positions.size()); ++v) trial.moving.push_back(v);
-        relax(trial, kHaste);
         trials.push_back(std::move(trial));
       }
     }
+    parallel_for(static_cast<int>(trials.size()), context_.threads, [&](int i) { relax(trials[i], kHaste); });
+    for (const Trial& trial : trials) boxes_opened_ += trial.boxes_opened;
     return trials;
   }
 
   Workpiece located(const QuadMesh& mesh) const {
     Workpiece piece(mesh, input_, features_, index_);
     piece.h = edge_;
-    piece.locate_all(context_);
+    piece.locate_all();  // a patch: nothing to share
     return piece;
   }
 
-  void relax(Trial& trial, const DescentPlan& plan) {
+  void relax(Trial& trial, const DescentPlan& plan) const {
     Workpiece piece = located(trial.mesh);
     const FlawMeasure measure(piece, whole_, options_.agreement, &options_.least_agreement);
     ShapeDescent(piece, measure, trial.moving).descend(plan);
     trial.mesh = piece.mesh.extract(piece.face);
     trial.shapes = shapes_of(piece.mesh, all_quads(trial.mesh), measure);
-    boxes_opened_ += measure.boxes_opened();
+    trial.boxes_opened = measure.boxes_opened();
   }
 
   Shapes shapes_of_patch(const QuadMesh& mesh) const {
