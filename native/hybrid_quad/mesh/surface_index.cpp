@@ -145,10 +145,6 @@ struct SurfaceIndex::Tree {
   Vector3 origin = Vector3::Zero();
   double scale = 1;  ///< of the tree's units, in which the surface has a size of 1: single precision overflows else
 
-  bool passes(int f, const Filter& filter) const { return passes_region(f, filter) && passes_normal(f, filter); }
-  bool passes_region(int f, const Filter& filter) const {
-    return filter.region < 0 || region.empty() || region[f] == filter.region;
-  }
   bool passes_normal(int f, const Filter& filter) const {
     return filter.min_cosine <= -1 || normal[f].dot(filter.normal) >= filter.min_cosine;
   }
@@ -404,17 +400,31 @@ void SurfaceIndex::Tree::bound(std::vector<Node>& tree, const std::vector<Matrix
   }
 }
 
-SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads) : tree_(std::make_unique<Tree>()) {
-  tree_->mesh = mesh;
-  tree_->region = std::move(face_region);
-  tree_->build(threads);
+SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads) {
+  const auto tree = std::make_shared<Tree>();
+  tree->mesh = mesh;
+  tree->region = std::move(face_region);
+  tree->build(threads);
+  tree_ = tree;
 }
 
 SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : SurfaceIndex(mesh, std::move(face_region), 1) {}
 
-SurfaceIndex::~SurfaceIndex() = default;
-SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
-SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
+SurfaceIndex SurfaceIndex::without_regions() const {
+  SurfaceIndex same = *this;
+  same.knows_regions_ = false;
+  return same;
+}
+
+const std::vector<int>& SurfaceIndex::region() const {
+  static const std::vector<int> none;
+  return knows_regions_ ? tree_->region : none;
+}
+
+bool SurfaceIndex::passes(int face, const Filter& filter) const {
+  const std::vector<int>& known = region();
+  return (filter.region < 0 || known.empty() || known[face] == filter.region) && tree_->passes_normal(face, filter);
+}
 
 const TriangleMesh& SurfaceIndex::mesh() const { return tree_->mesh; }
 const Vector3& SurfaceIndex::normal(int face) const { return tree_->normal[face]; }
@@ -424,9 +434,9 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
   SurfacePoint best;
   best.squared_distance = filter.within * filter.within;
   if (tree.nodes.empty()) return best;
-  if (filter.hint >= 0 && tree.passes(filter.hint, filter)) {
+  if (filter.hint >= 0 && passes(filter.hint, filter)) {
     const SurfacePoint walked = walk(p, filter.hint);
-    if (!tree.passes(walked.face, filter)) Tree::take(p, filter.hint, tree.corners_of(filter.hint), best);
+    if (!passes(walked.face, filter)) Tree::take(p, filter.hint, tree.corners_of(filter.hint), best);
     else if (walked.squared_distance < best.squared_distance) best = walked;
   }
 
@@ -434,6 +444,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     int child;
     float squared_distance;
   };
+  const int region = knows_regions_ ? filter.region : -1;
   const FloatBox place = tree.in_units(p, p);
   float limit = tree.limit_of(best.squared_distance, p);
   Entry stack[kStackSize];
@@ -457,7 +468,7 @@ SurfacePoint SurfaceIndex::nearest(const Vector3& p, const Filter& filter) const
     for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
       const float distance = distances[k];
       if (!(distance <= limit)) continue;
-      if (filter.region >= 0 && node.region[k] >= 0 && node.region[k] != filter.region) continue;
+      if (region >= 0 && node.region[k] >= 0 && node.region[k] != region) continue;
       int at = size++;  // the nearest comes to the top
       for (; at > begin && stack[at - 1].squared_distance < distance; --at) stack[at] = stack[at - 1];
       stack[at] = {node.child[k], distance};
@@ -490,7 +501,7 @@ bool SurfaceIndex::any_in_box(const Vector3& low, const Vector3& high, const std
 }
 
 SurfacePoint SurfaceIndex::walk(const Vector3& p, int start) const {
-  return walk_to_nearest(tree_->mesh, tree_->region, p, start);
+  return walk_to_nearest(tree_->mesh, region(), p, start);
 }
 
 }  // namespace hybrid_quad

@@ -29,9 +29,8 @@ class SurfaceIndex {
   /// \param face_region  #F, may be empty (no filter by region)  \param threads  the index does not depend on it
   SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads);
   SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region);
-  ~SurfaceIndex();
-  SurfaceIndex(SurfaceIndex&&) noexcept;
-  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
+  /// The index of the same surface without regions, which shares all that this one holds.
+  SurfaceIndex without_regions() const;
 
   struct Filter {
     int region = -1;                       ///< only faces of this region; -1 = any
@@ -55,7 +54,11 @@ class SurfaceIndex {
 
  private:
   struct Tree;
-  std::unique_ptr<Tree> tree_;
+  bool passes(int face, const Filter& filter) const;
+  const std::vector<int>& region() const;
+
+  std::shared_ptr<const Tree> tree_;
+  bool knows_regions_ = true;
 };
 
 /// The point of triangle (a, b, c) nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).

@@ -83,10 +83,13 @@ double given_length(const std::vector<Component>& components, const std::vector<
   return quads > 0 ? std::sqrt(area / quads) : options.edge_length;
 }
 
-std::shared_ptr<const SurfaceIndex> recalled_index(StageCache* cache, const std::string& what, int part, const TriangleMesh& mesh,
-                                                   int threads) {
-  return recalled(cache, {StageCache::Level::kPlan, "index of " + what, part},
-                  [&] { return std::make_shared<const SurfaceIndex>(mesh, std::vector<int>{}, threads); });
+/// Whether two meshes have the same faces in space, one by one, joined alike.
+bool are_same_faces(const TriangleMesh& one, const TriangleMesh& other) {
+  if (one.face_count() != other.face_count() || one.opposites() != other.opposites()) return false;
+  for (int f = 0; f < one.face_count(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (one.position(one.face(f)[k]) != other.position(other.face(f)[k])) return false;
+  return true;
 }
 
 /// How long the edges of each component are to be.
@@ -190,7 +193,9 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
       const Component& c = components[i];
       add_directions(c.mesh, c.vertex, c.face, domain.values, domain.options, found.wishes[i]);
       if (!found.wishes[i].guides.empty() && !found.wishes[i].index)
-        found.wishes[i].index = recalled_index(context.cache, "component", static_cast<int>(i), c.mesh, context.threads);
+        found.wishes[i].index = recalled(context.cache, {StageCache::Level::kPlan, "index of component", static_cast<int>(i)}, [&] {
+          return std::make_shared<const SurfaceIndex>(c.mesh, std::vector<int>{}, context.threads);
+        });
     }
     return found;
   });
@@ -200,7 +205,12 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
 }
 
 std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
-  return recalled_index(run.context.cache, "whole", 0, surface_of(run), run.context.threads);
+  return recalled(run.context.cache, {StageCache::Level::kPlan, "index of whole"}, [&] {
+    const TriangleMesh& whole = surface_of(run);
+    if (run.plans.size() == 1 && are_same_faces(run.plans[0].mesh, whole))
+      return std::make_shared<const SurfaceIndex>(run.plans[0].index->without_regions());
+    return std::make_shared<const SurfaceIndex>(whole, std::vector<int>{}, run.context.threads);
+  });
 }
 
 std::vector<double> shares_of_area(const RunPlan& run) {
