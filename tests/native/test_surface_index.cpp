@@ -46,6 +46,27 @@ TEST(SurfaceIndex, FindsWhatBruteForceFinds) {
   }
 }
 
+TEST(SurfaceIndex, WithoutRegionsFindsWhatOneThatNeverKnewAnyFinds) {
+  const TriangleMesh m = test::torus(24, 12);
+  std::vector<int> regions(m.face_count());
+  for (int f = 0; f < m.face_count(); ++f) regions[f] = f % 3;
+  const SurfaceIndex with(m, regions), without = with.without_regions(), never(m, {});
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> u(-2, 2);
+  int other_ways = 0;  // that regions make a difference to
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 p(u(random), u(random), u(random));
+    SurfaceIndex::Filter filter;
+    filter.region = i % 4 - 1;
+    if (i % 2) filter.hint = i % m.face_count();
+    EXPECT_EQ(without.nearest(p, filter).face, never.nearest(p, filter).face);
+    EXPECT_EQ(without.nearest(p, filter).position, never.nearest(p, filter).position);
+    EXPECT_EQ(without.walk(p, i % m.face_count()).face, never.walk(p, i % m.face_count()).face);
+    other_ways += with.walk(p, i % m.face_count()).face != never.walk(p, i % m.face_count()).face;
+  }
+  EXPECT_GT(other_ways, 0);
+}
+
 TEST(SurfaceIndex, AnyFaceIsFoundWhereTheNearestIs) {
   const TriangleMesh m = test::torus(24, 12);
   const SurfaceIndex index(m, {});

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
 #include "hybrid_quad/pipeline/last_means.h"
@@ -115,11 +116,10 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
     }
     FirstPass full{planned, {}};
     std::array<StageClock, 2> clocks;
-    side_by_side(2, context.in_stage(context.stage, 0, 0.9), [&](int i, const RunContext& each) {
+    CommonProgress progress(context, {0.5, 0.5}, 0, 0.9);
+    side_by_side(2, context, [&](int i, const RunContext& each) {
       FirstPass& pass = i == 0 ? full : roomy;
-      RunContext own = each.in_stage(each.stage, 0.5 * i, 0.5 * (i + 1));
-      if (i > 0 && context.threads > 1) own.on_progress = nullptr;  // ahead of the other's
-      pass.result = run_pass(pass.plan, whole, wishes, guides, options, kSettings[0], clocks[i], own);
+      pass.result = run_pass(pass.plan, whole, wishes, guides, options, kSettings[0], clocks[i], progress.context_of(i, each));
     });
     for (const StageClock& one : clocks) clock.add(one);
     return mean_shape(roomy.result.mesh) > mean_shape(full.result.mesh) + kBetter ? roomy : full;

@@ -47,8 +47,9 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
 
 /// The surface that a plan is for.
 inline const TriangleMesh& surface_of(const RunPlan& run) { return run.input.built.mesh; }
+/// Of the surface that a plan is for, without regions; the one of its only component, where that is the same.
 std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run);
-/// Of the components, 1 in all.
+/// Of each component in the remeshed area, 1 in all.
 std::vector<double> shares_of_area(const RunPlan& run);
 
 }  // namespace hybrid_quad
