@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
@@ -47,6 +48,33 @@ TEST(PolygonTriangulation, ConcavePolygonsAreNoFans) {
   const std::vector<Vector3> arrow{{0, 0, 0}, {2, -1, 0}, {0, 2, 0}, {-2, -1, 0}};
   for (int first = 0; first < 4; ++first)
     EXPECT_EQ(sorted(triangulate_polygon(arrow, {0, 1, 2, 3}, first)), (Triangles{{0, 1, 2}, {0, 2, 3}})) << first;
+}
+
+TEST(PolygonTriangulation, ABentPolygonIsAFanAsInMostReaders) {
+  const std::vector<Vector3> quad{{0, 0, 0}, {1, 0, 0.2}, {1, 1, 0}, {0, 1, 0.2}};
+  for (int first = 0; first < 4; ++first) {
+    const Triangles fan{{first, (first + 1) % 4, (first + 2) % 4}, {first, (first + 2) % 4, (first + 3) % 4}};
+    EXPECT_EQ(sorted(triangulate_polygon(quad, {0, 1, 2, 3}, first)), sorted(fan)) << first;
+  }
+  std::vector<Vector3> pentagon;
+  for (int i = 0; i < 5; ++i) pentagon.push_back({std::cos(1.2 * i), std::sin(1.2 * i), i % 2 == 0 ? 0.0 : 0.1});
+  for (int first = 0; first < 5; ++first) {
+    Triangles fan;
+    for (int i = 1; i < 4; ++i) fan.push_back({first, (first + i) % 5, (first + i + 1) % 5});
+    EXPECT_EQ(sorted(triangulate_polygon(pentagon, {0, 1, 2, 3, 4}, first)), sorted(fan)) << first;
+  }
+}
+
+TEST(PolygonTriangulation, ABentConcaveQuadIsCutAtItsConcaveCorner) {
+  const std::vector<Vector3> arrow{{0, 0, 0.1}, {2, -1, 0}, {0, 2, 0}, {-2, -1, 0}};
+  for (int first = 0; first < 4; ++first)
+    EXPECT_EQ(sorted(triangulate_polygon(arrow, {0, 1, 2, 3}, first)), (Triangles{{0, 1, 2}, {0, 2, 3}})) << first;
+}
+
+TEST(PolygonTriangulation, AFlatQuadIsCutAlikeWhereverItBegins) {
+  const std::vector<Vector3> quad{{0, 0, 0}, {2, 0, 0}, {3, 1, 1e-6}, {0, 1, 0}};
+  const Triangles cut = sorted(triangulate_polygon(quad, {0, 1, 2, 3}, 0));
+  for (int first = 1; first < 4; ++first) EXPECT_EQ(sorted(triangulate_polygon(quad, {0, 1, 2, 3}, first)), cut) << first;
 }
 
 TEST(PolygonTriangulation, CornersInOnePlaceOrOnASideStillLeaveThePolygonItsSurface) {

@@ -86,6 +86,21 @@ std::vector<std::array<int, 3>> fan(int corners, int first) {
   return triangles;
 }
 
+Vector3 twice_area(const std::vector<Vector3>& positions, const std::vector<int>& corners, const std::array<int, 3>& t) {
+  const Vector3& a = positions[corners[t[0]]];
+  return (positions[corners[t[1]]] - a).cross(positions[corners[t[2]]] - a);
+}
+
+/// Whether triangles are bent along the sides between them by what can be seen.
+bool is_bent(const std::vector<Vector3>& positions, const std::vector<int>& corners, const std::vector<std::array<int, 3>>& triangles) {
+  constexpr double kSine = 0.01;
+  for (std::size_t i = 0; i + 1 < triangles.size(); ++i) {
+    const Vector3 a = twice_area(positions, corners, triangles[i]), b = twice_area(positions, corners, triangles[i + 1]);
+    if (a.cross(b).norm() > kSine * a.norm() * b.norm()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners, int first) {
@@ -96,9 +111,12 @@ std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& 
   const auto is_across = [&](const std::array<int, 3>& t) {
     return stands_across({positions[corners[t[0]]], positions[corners[t[1]]], positions[corners[t[2]]]}, {flat[t[0]], flat[t[1]], flat[t[2]]});
   };
+  const std::vector<std::array<int, 3>> as_fan = fan(static_cast<int>(corners.size()), first);
+  const bool is_side_by_side = std::none_of(as_fan.begin(), as_fan.end(), is_across);
   // Ears have an area in the plane, but for the last one, and for those of a polygon that has none.
-  if (is_across(triangles.back()) || (!proper && std::any_of(triangles.begin(), triangles.end(), is_across)))
-    triangles = fan(static_cast<int>(corners.size()), first);
+  if ((is_side_by_side && is_bent(positions, corners, as_fan)) || is_across(triangles.back()) ||
+      (!proper && std::any_of(triangles.begin(), triangles.end(), is_across)))
+    triangles = as_fan;
   for (std::array<int, 3>& t : triangles)
     for (int& i : t) i = corners[i];
   return triangles;

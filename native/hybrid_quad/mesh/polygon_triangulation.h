@@ -8,8 +8,8 @@
 namespace hybrid_quad {
 
 /// Triangles of a polygon, corner count - 2 of them, by ear clipping in its best plane (Newell's normal); concave and slightly
-/// non-planar polygons are fine. One that crosses or touches itself in that plane has no surface of its own: it gets the one
-/// that most readers give it, a fan.
+/// non-planar polygons are fine. One that has no surface of its own, because it crosses or touches itself in that plane or is bent,
+/// gets the one that most readers give it, a fan.
 /// \param first  the fan's corner: index into `corners`
 std::vector<std::array<int, 3>> triangulate_polygon(const std::vector<Vector3>& positions, const std::vector<int>& corners, int first = 0);
 

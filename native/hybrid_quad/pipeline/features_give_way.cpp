@@ -13,6 +13,8 @@ namespace {
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
 constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
+// Where features need more than this whatever the gaps, as the rim of a flap that is thin as a hair does, none by angle can stay.
+constexpr double kNoRoom = 1;
 // The same of edges shorter than quads, and how far all give way where these are too many.
 constexpr double kTooShort = 0.02, kHardlyAnyShort = 0.006, kAiry = 0.15;
 
@@ -69,6 +71,13 @@ std::vector<char> with_counted(const ComponentPlan& plan, std::vector<char> is_f
 /// Half-edges of features that do not give way to others: those that somebody marked, or wants a number of quads along.
 std::vector<char> firm_features(const ComponentPlan& plan) { return with_counted(plan, plan.is_given); }
 
+/// \param is_firm  3 #F  \returns it with the boundary
+std::vector<char> with_boundary(const ComponentPlan& plan, std::vector<char> is_firm) {
+  for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+    if (plan.features.is_feature(h) && plan.mesh.opposite(h) < 0) is_firm[h] = 1;
+  return is_firm;
+}
+
 /// Takes features away that pass near some places, but not the boundary.
 /// \param is_firm  3 #F: what else stays  \param reach  of an edge: how near is near
 template <class Reach>
@@ -116,7 +125,11 @@ bool make_room(ComponentPlan& plan) {
   const double length = usual_length(plan);
   const auto crowding_of = [&](const FeatureGraph& features) { return crowding(plan.mesh, features, plan.quads, length); };
   plan.was_crowded = crowding_of(plan.features) > kTooCrowded;
-  return plan.was_crowded && widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
+  if (!plan.was_crowded) return false;
+  const int before = plan.given_way;
+  widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
+  if (crowding_of(plan.features) > kNoRoom) take_features_away(plan, with_boundary(plan, firm_features(plan)));
+  return plan.given_way > before;
 }
 
 bool make_room_for_shapes(ComponentPlan& plan) {
