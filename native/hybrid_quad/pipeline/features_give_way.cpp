@@ -13,8 +13,6 @@ namespace {
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
 constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
-// Where features need more than this whatever the gaps, as the rim of a flap that is thin as a hair does, none by angle can stay.
-constexpr double kNoRoom = 1;
 // The same of edges shorter than quads, and how far all give way where these are too many.
 constexpr double kTooShort = 0.02, kHardlyAnyShort = 0.006, kAiry = 0.15;
 
@@ -44,6 +42,12 @@ double shortness(const TriangleMesh& mesh, const FeatureGraph& features, double 
   for (const FeatureCurve& curve : features.curves)
     edges += std::max(0.0, (curve.closed ? kClosed : kOpen) - length_of(mesh, curve) / length);
   return edges / quads;
+}
+
+double total_length(const ComponentPlan& plan) {
+  double sum = 0;
+  for (const FeatureCurve& curve : plan.features.curves) sum += length_of(plan.mesh, curve);
+  return sum;
 }
 
 /// Takes away the half-edges that do not remain, and counts their curves.
@@ -119,17 +123,15 @@ double usual_length(const ComponentPlan& plan) { return std::sqrt(plan.mesh.tota
 void merge_double_lines(ComponentPlan& plan, double length) {
   constexpr double kGap = 0.05;
   take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length));
+  // What is left lies on top of itself, as the rim of a flap does, where the surface is smaller than a strip along it.
+  if (total_length(plan) * kGap * length > plan.mesh.total_area()) take_features_away(plan, with_boundary(plan, plan.is_given));
 }
 
 bool make_room(ComponentPlan& plan) {
   const double length = usual_length(plan);
   const auto crowding_of = [&](const FeatureGraph& features) { return crowding(plan.mesh, features, plan.quads, length); };
   plan.was_crowded = crowding_of(plan.features) > kTooCrowded;
-  if (!plan.was_crowded) return false;
-  const int before = plan.given_way;
-  widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
-  if (crowding_of(plan.features) > kNoRoom) take_features_away(plan, with_boundary(plan, firm_features(plan)));
-  return plan.given_way > before;
+  return plan.was_crowded && widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
 }
 
 bool make_room_for_shapes(ComponentPlan& plan) {
