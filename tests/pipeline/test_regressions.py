@@ -24,6 +24,14 @@ def test_few_flawed_quads_are_split_before_all_is_remeshed_anew():
     assert report["repairs"]["split_sides"] > 0
 
 
+def test_the_rim_of_a_flap_thin_as_a_hair_is_no_feature():
+    case = load_case(FOLDER / "rim_of_a_flap")
+    for asked in ({"quads": 2000}, {"edge_length": 1.5}):
+        report = hybrid_quad.remesh(case.vertices, case.faces, sharp_angle=40.0, **asked).report
+        assert (report["flawed_quads"], report["extra_passes"]) == (0, 0), asked
+        assert report["features_given_way"] > 0
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_surfaces_with_random_wishes(seed):
     verdict = verdict_of(make_case(seed), 60.0)
