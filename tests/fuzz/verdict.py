@@ -72,8 +72,9 @@ def _outcome(case: Case, time_limit: float) -> tuple[str, str]:
         found += _differences(repaired[0], result.quads)
     if found:
         return "invalid", "; ".join(found)[:600]
-    flawed = [warning for warning in result.report["warnings"] if "point against" in warning]
-    return ("flawed", flawed[0]) if flawed else ("valid", "")
+    if result.report["flawed_quads"] > 0:
+        return "flawed", next(warning for warning in result.report["warnings"] if "against the surface" in warning)
+    return "valid", ""
 
 
 def _differences(mesh: Snapshot, quads: np.ndarray) -> list[str]:

@@ -1,16 +1,19 @@
 """Whole runs on surfaces of every topology."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import hybrid_quad
-from fuzz.cases import make_case
+from fuzz.cases import load_case
 from hybrid_quad.core import report
 from hybrid_quad.core.validation import scaled_jacobian
 from support import surfaces
 from support.results import assert_sound, distance_to_edges
+
+FLAP = Path(__file__).resolve().parents[1] / "data" / "regressions" / "rim_of_a_flap"
 
 SURFACES = {
     "sphere": surfaces.sphere(10),
@@ -199,9 +202,9 @@ def test_orientation_is_the_input_s():
 
 
 def test_flawed_quads_are_named():
-    # A random surface of 69 faces with forty marked edges, for five quads: one of its quads has no way to lie right.
-    case = make_case(77152)
-    result = hybrid_quad.remesh(case.vertices, case.faces, **case.options)
+    # A box and a flap ten thousand times as long as wide, which gets 13 quads: one of them has no way to lie right.
+    case = load_case(FLAP)
+    result = hybrid_quad.remesh(case.vertices, case.faces, quads=100)
     report = result.report
     assert report["flawed_quads"] > 0, "mended: another case has to stand for it"
     assert len(report["flawed_faces"]) == report["flawed_quads"]
