@@ -79,6 +79,11 @@ def test_edge_length():
     assert lengths.mean() == pytest.approx(0.25, rel=0.1)
 
 
+def test_edges_too_long_for_the_surface_are_told_as_lengths():
+    result = hybrid_quad.remesh(*SURFACES["torus"], edge_length=2.0)
+    assert any(warning.startswith("edges as long as asked make 4 quads, got ") for warning in result.report["warnings"])
+
+
 def test_sharp_edges_and_corners_are_kept():
     vertices, faces = SURFACES["box"]
     result = hybrid_quad.remesh(vertices, faces, quads=600)

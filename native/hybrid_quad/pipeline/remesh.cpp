@@ -156,9 +156,10 @@ void measure_distances(RemeshResult& result, const std::vector<ComponentPlan>& p
   }
 }
 
-std::string count_warning(const RemeshReport& report, double wanted) {
-  const std::string numbers = "asked for " + std::to_string(std::lround(wanted)) + " quads, got " + std::to_string(report.quads);
-  if (report.fewest_quads > wanted)
+std::string count_warning(const RemeshReport& report, const RunPlan& run) {
+  const std::string numbers = (run.is_by_count ? "asked for " : "edges as long as asked make ") + std::to_string(std::lround(run.wanted)) +
+                              " quads, got " + std::to_string(report.quads);
+  if (report.fewest_quads > run.wanted)
     return numbers + ": with so many parts, handles and holes there can't be fewer than " + std::to_string(report.fewest_quads);
   return numbers + ": features or small parts need another number";
 }
@@ -197,7 +198,7 @@ std::string flawed_warning(const RemeshReport& report, bool gave_up) {
 void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, RemeshResult& result) {
   const RemeshReport& report = result.report;
   std::vector<std::string>& warnings = result.report.warnings;
-  if (std::abs(report.quads / run.wanted - 1) > kCountTolerance) warnings.push_back(count_warning(report, run.wanted));
+  if (std::abs(report.quads / run.wanted - 1) > kCountTolerance) warnings.push_back(count_warning(report, run));
   if (report.features_given_way > 0)
     warnings.push_back(counted(report.features_given_way, "curve") +
                        " of edges by angle gave way to the number of quads, to others on top of them, or to valid "
