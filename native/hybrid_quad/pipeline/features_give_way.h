@@ -9,7 +9,8 @@ namespace hybrid_quad {
 // Features that a plan goes without: by angle, counted in given_way (docs/decisions/0006, 0007, 0014), and at the very last marked
 // ones, in marks_given_way (0047). Boundaries and curves with an asked count always stay. Lengths are to be planned anew after each.
 
-/// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays.
+/// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays. None does where what is
+/// left lies on top of itself, as the rim of a flap thin as a hair.
 /// \param length  the usual edge length (scene units)
 void merge_double_lines(ComponentPlan& plan, double length);
 
