@@ -167,6 +167,20 @@ TEST(FlawedQuads, WhoAsksForMoreFindsMore) {
   }
 }
 
+TEST(FlawedQuads, ANeedleMayFillTheSheetThatItLiesOn) {
+  // A narrow strip, face up, on a sheet that lies face down.
+  const double width = 0.01;
+  const SurfaceIndex index(TriangleMesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {-0.9, 0, 0}, {0.9, 0, 0}, {0.9, width, 0}, {-0.9, width, 0}},
+                                        {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}}), {});
+  const auto strip = [](double low, double high) {
+    return std::array<Vector3, 4>{Vector3(-0.1, low, 0), Vector3(0.2, low, 0), Vector3(0.2, high, 0), Vector3(-0.1, high, 0)};
+  };
+  const Agreement agreement{1, true};
+  EXPECT_FALSE(is_inverted(strip(0, width), index, agreement));
+  EXPECT_TRUE(is_inverted(strip(2 * width, 3 * width), index, agreement)) << "beside the strip, against the sheet";
+  EXPECT_TRUE(is_inverted(strip(-0.15, 0.15 + width), index, agreement)) << "the strip is a small part of what is below";
+}
+
 TEST(SurfaceDistance, ParallelSheets) {
   const TriangleMesh sheet = test::flat_grid(6, 6);
   const SurfaceIndex index(sheet, {});

@@ -86,18 +86,14 @@ std::vector<char> with_boundary(const ComponentPlan& plan, std::vector<char> is_
 /// \param is_firm  3 #F: what else stays  \param reach  of an edge: how near is near
 template <class Reach>
 void take_away_at(ComponentPlan& plan, const std::vector<Vector3>& places, const std::vector<char>& is_firm, const Reach& reach) {
-  std::vector<char> remains = is_firm;
+  std::vector<char> remains = with_boundary(plan, is_firm);
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h) {
     if (remains[h] || !plan.features.is_feature(h)) continue;
     const int a = plan.mesh.from(h), b = plan.mesh.to(h);
     const double near = reach(a, b);
-    remains[h] =
-        plan.mesh.opposite(h) < 0 ||
-        std::none_of(
-            places.begin(), places.end(),
-            [&](const Vector3& p) {
-              return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < near * near;
-            });
+    remains[h] = std::none_of(places.begin(), places.end(), [&](const Vector3& p) {
+      return nearest_on_segment(p, {plan.mesh.position(a), plan.mesh.position(b)}).squared_distance < near * near;
+    });
   }
   take_features_away(plan, remains);
 }

@@ -189,8 +189,10 @@ bool is_inverted(const std::array<Vector3, 4>& corners, const SurfaceIndex& surf
   if (near.face < 0 || !points_against(surface, centre, near, normal, kTouches * size, known)) return false;
   const double distance = std::sqrt(near.squared_distance);
   const Ball ball{centre, distance + kReach * size};
+  // A needle may fill a sheet that is as narrow: what lies beside it does not count.
+  const Ball within{centre, distance + kReach * std::min(size, area / size)};
   return !agrees_in(surface, ball, normal, agreement.area, known) &&
-         !(agreement.or_coincides && coincides(surface, ball, distance + kTouches * size, normal, known));
+         !(agreement.or_coincides && coincides(surface, within, distance + kTouches * size, normal, known));
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh, const SurfaceIndex& surface, const Agreement& agreement, int threads) {
