@@ -10,7 +10,7 @@ import pytest
 import hybrid_quad
 import variants
 from hybrid_quad.core.mesh_io import read_mesh
-from hybrid_quad.core.validation import violations
+from hybrid_quad.core.validation import scaled_jacobian, violations
 from support.results import assert_sound
 
 HERE = Path(__file__).resolve().parents[1] / "data" / "meshes"
@@ -43,6 +43,22 @@ def test_a_model_with_edges_of_three_faces():
     result = hybrid_quad.remesh(vertices, faces, quads=1000)
     assert violations(result.vertices, result.quads) == []
     assert {defect["code"] for defect in result.report["defects"]} >= {"non_manifold_edge"}
+
+
+def test_too_few_quads_for_the_detail_are_told():
+    """A part with pockets and bosses: thirty quads cannot have shapes there."""
+    vertices, faces = read_mesh(HERE / "hexme_i01o_m1_t.obj")
+
+    def told(quads):
+        result = hybrid_quad.remesh(vertices, faces, quads=quads, threads=2)
+        poor = int((scaled_jacobian(result.vertices, result.quads) < 0.2).sum())
+        sentences = [w for w in result.report["warnings"] if "narrow, skew or folded" in w]
+        assert all(w.startswith(f"{poor} of {len(result.quads)} quads") for w in sentences)
+        return poor / len(result.quads), bool(sentences)
+
+    few, many = told(30), told(2000)
+    assert few[0] > 0.03 and few[1]
+    assert many[0] < 0.03 and not many[1]
 
 
 @pytest.mark.slow

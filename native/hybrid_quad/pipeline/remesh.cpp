@@ -85,6 +85,14 @@ int lone_quads(const QuadMesh& mesh) {
   return count;
 }
 
+/// Quads so narrow, skew or folded that they look wrong.
+int poor_quads(const QuadMesh& mesh) {
+  constexpr double kPoor = 0.2;
+  return static_cast<int>(std::count_if(mesh.quads.begin(), mesh.quads.end(), [&](const auto& q) {
+    return scaled_jacobian(mesh.positions[q[0]], mesh.positions[q[1]], mesh.positions[q[2]], mesh.positions[q[3]]) < kPoor;
+  }));
+}
+
 /// Vertices of the input that a component's vertices are; -1 for those that are none of it.
 std::vector<int> input_vertices_of(const RunPlan& run, std::size_t component, int input_vertex_count) {
   std::vector<int> input_vertex;
@@ -211,6 +219,14 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
   if (lone > 0)
     warnings.push_back(counted(lone, "quad") + (lone == 1 ? " lies" : " lie") +
                        " alone between two features: too narrow there for two rows");
+  constexpr double kMany =
+      0.03;  // of the quads: good results have a thousandth, some where features meet at acute angles a hundredth
+  if (const int poor = poor_quads(result.mesh); poor > kMany * report.quads)
+    warnings.push_back(
+        std::to_string(poor) + " of " + std::to_string(report.quads) +
+        " quads are narrow, skew or folded (scaled Jacobian below 0.2): the surface has more detail than so many quads can "
+        "follow; more quads" +
+        (run.options.use_sharp_angle ? ", or a larger sharp angle, give better ones" : " give better ones"));
   if (report.flawed_quads > 0) {
     const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
     warnings.push_back(flawed_warning(report, gave_up));
