@@ -47,6 +47,15 @@ TEST(ShapeQuality, RegularGridIsPerfect) {
   EXPECT_EQ(quality.irregular_vertices, 0);
 }
 
+TEST(ShapeQuality, PoorIsAScaledJacobianBelowAFifth) {
+  for (const auto& [sine, poor] : {std::pair{0.19, 16}, std::pair{0.21, 0}}) {
+    QuadMesh mesh = square_grid(4, 0);
+    for (Vector3& p : mesh.positions) p = Vector3(p.x() + std::sqrt(1 - sine * sine) * p.y(), sine * p.y(), 0);
+    EXPECT_EQ(shape_quality(mesh).poor, poor);
+    EXPECT_EQ(shape_quality(mesh).below_zero, 0);
+  }
+}
+
 TEST(ShapeQuality, PercentileInterpolatesLikeNumpy) {
   QuadMesh mesh = square_grid(10, 0);
   mesh.positions[5 * 11 + 5] += Vector3(0.03, 0.03, 0);  // four quads change, the rest stay at one

@@ -21,6 +21,8 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kCountTolerance = 0.1;  // off by more, a warning says so
+constexpr double kManyPoor =
+    0.03;  // of the quads: so too; good results have a thousandth, some with features at acute angles a hundredth
 
 /// \param m  the component's quads, mirror images included  \param images  how many of these there are
 /// \param guided  gets those of the component
@@ -85,14 +87,6 @@ int lone_quads(const QuadMesh& mesh) {
   return count;
 }
 
-/// Quads so narrow, skew or folded that they look wrong.
-int poor_quads(const QuadMesh& mesh) {
-  constexpr double kPoor = 0.2;
-  return static_cast<int>(std::count_if(mesh.quads.begin(), mesh.quads.end(), [&](const auto& q) {
-    return scaled_jacobian(mesh.positions[q[0]], mesh.positions[q[1]], mesh.positions[q[2]], mesh.positions[q[3]]) < kPoor;
-  }));
-}
-
 /// Vertices of the input that a component's vertices are; -1 for those that are none of it.
 std::vector<int> input_vertices_of(const RunPlan& run, std::size_t component, int input_vertex_count) {
   std::vector<int> input_vertex;
@@ -140,14 +134,11 @@ GuidedEdges join_components(RunPlan& run, std::vector<ComponentResult>& parts, c
   return guided;
 }
 
-void measure_shapes(RemeshResult& result) {
-  RemeshReport& r = result.report;
-  const ShapeQuality shape = shape_quality(result.mesh);
+void record_shapes(const ShapeQuality& shape, RemeshReport& r) {
   r.scaled_jacobian_mean = shape.scaled_jacobian_mean;
   r.scaled_jacobian_p1 = shape.scaled_jacobian_p1;
   r.scaled_jacobian_min = shape.scaled_jacobian_min;
   r.irregular_vertices = shape.irregular_vertices;
-  r.edge_loops = edge_loops_of(result.mesh);
 }
 
 void measure_distances(RemeshResult& result, const std::vector<ComponentPlan>& plans, const std::vector<ComponentResult>& parts,
@@ -203,7 +194,8 @@ std::string flawed_warning(const RemeshReport& report, bool gave_up) {
 }
 
 /// What was asked and not met, and quads that want a look.
-void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, RemeshResult& result) {
+void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, const ShapeQuality& shape,
+                  RemeshResult& result) {
   const RemeshReport& report = result.report;
   std::vector<std::string>& warnings = result.report.warnings;
   if (std::abs(report.quads / run.wanted - 1) > kCountTolerance) warnings.push_back(count_warning(report, run));
@@ -219,14 +211,11 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
   if (lone > 0)
     warnings.push_back(counted(lone, "quad") + (lone == 1 ? " lies" : " lie") +
                        " alone between two features: too narrow there for two rows");
-  constexpr double kMany =
-      0.03;  // of the quads: good results have a thousandth, some where features meet at acute angles a hundredth
-  if (const int poor = poor_quads(result.mesh); poor > kMany * report.quads)
+  if (shape.poor > kManyPoor * report.quads)
     warnings.push_back(
-        std::to_string(poor) + " of " + std::to_string(report.quads) +
-        " quads are narrow, skew or folded (scaled Jacobian below 0.2): the surface has more detail than so many quads can "
-        "follow; more quads" +
-        (run.options.use_sharp_angle ? ", or a larger sharp angle, give better ones" : " give better ones"));
+        std::to_string(shape.poor) + " of " + std::to_string(report.quads) +
+        " quads are narrow, skew or folded (scaled Jacobian below 0.2): there is more detail, or there are more features, than "
+        "so many quads can follow; more quads have better shapes");
   if (report.flawed_quads > 0) {
     const bool gave_up = std::any_of(parts.begin(), parts.end(), [](const ComponentResult& part) { return part.gave_up; });
     warnings.push_back(flawed_warning(report, gave_up));
@@ -284,7 +273,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     report.flawed_faces = flawed_quads(result.mesh, *whole, least_agreement(*whole), run.context.threads);
     report.flawed_quads = std::max(report.flawed_quads, static_cast<int>(report.flawed_faces.size()));
   }
-  add_warnings(run, parts, result);
+  const ShapeQuality shape = clock.measure("quality", [&] { return shape_quality(result.mesh); });
+  add_warnings(run, parts, shape, result);
   if (run.images > 1) {
     const std::vector<std::string> violations = violations_of(result.mesh);
     if (!violations.empty()) throw InternalError("symmetry", violations.front());
@@ -295,7 +285,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
       guide.fit.length *= run.frame.scale;
       guide.fit.edge_length *= run.frame.scale;
     }
-    measure_shapes(result);
+    record_shapes(shape, report);
+    report.edge_loops = edge_loops_of(result.mesh);
     if (run.options.measure_distances) measure_distances(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });
   move_outward(run.frame, soup, result.mesh);

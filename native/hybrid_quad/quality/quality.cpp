@@ -178,6 +178,7 @@ double scaled_jacobian(const Vector3& a, const Vector3& b, const Vector3& c, con
 }
 
 ShapeQuality shape_quality(const QuadMesh& mesh) {
+  constexpr double kPoor = 0.2;
   ShapeQuality quality;
   std::vector<double> values;
   values.reserve(mesh.quads.size());
@@ -191,6 +192,7 @@ ShapeQuality shape_quality(const QuadMesh& mesh) {
     const std::size_t below = static_cast<std::size_t>(place), above = std::min(below + 1, values.size() - 1);
     quality.scaled_jacobian_p1 = values[below] + (place - below) * (values[above] - values[below]);
     quality.below_zero = static_cast<int>(std::upper_bound(values.begin(), values.end(), 0.0) - values.begin());
+    quality.poor = static_cast<int>(std::lower_bound(values.begin(), values.end(), kPoor) - values.begin());
   }
   std::vector<int> valence(mesh.positions.size(), 0);
   std::vector<char> boundary(mesh.positions.size(), 0);

@@ -19,6 +19,7 @@ struct ShapeQuality {
   double scaled_jacobian_p1 = 0;  ///< first percentile (linear interpolation)
   double scaled_jacobian_min = 0;
   int below_zero = 0;             ///< quads with scaled Jacobian <= 0
+  int poor = 0;                   ///< quads with scaled Jacobian < 0.2: so narrow, skew or folded that it shows
   int irregular_vertices = 0;     ///< interior vertices of valence != 4
 };
 
