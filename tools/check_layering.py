@@ -27,7 +27,7 @@ PUBLIC_HEADERS = {
     "frame_field": {"guide_map.h", "frame_topology.h", "surface_curvature.h"},
     "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
-    "features": {"curve_counts.h", "features_with_room.h"},
+    "features": {"crease_normals.h", "curve_counts.h", "features_with_room.h"},
     "sizing": {"asked_lengths.h", "chord_lengths.h", "feature_size.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')

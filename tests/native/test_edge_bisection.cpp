@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <set>
+#include <vector>
 
 #include "hybrid_quad/mesh/edge_bisection.h"
 #include "support/meshes.h"
@@ -31,6 +32,18 @@ TEST(EdgeBisection, BoundsEdgesAndKeepsTheSurface) {
     ASSERT_GE(fine.mesh.vertex_count(), mesh.vertex_count());
     for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(fine.mesh.position(v), mesh.position(v));
   }
+}
+
+TEST(EdgeBisection, KnowsWhichFaceEachIsAPartOf) {
+  const TriangleMesh mesh = test::icosphere(1);
+  const BisectedMesh fine = bisect_long_edges(mesh, 0.1, {});
+  ASSERT_EQ(fine.face_source.size(), static_cast<std::size_t>(fine.mesh.face_count()));
+  std::vector<double> area(mesh.face_count(), 0);
+  for (int f = 0; f < fine.mesh.face_count(); ++f) {
+    area[fine.face_source[f]] += fine.mesh.area(f);
+    EXPECT_NEAR(fine.mesh.normal(f).dot(mesh.normal(fine.face_source[f])), 1, 1e-12);
+  }
+  for (int f = 0; f < mesh.face_count(); ++f) EXPECT_NEAR(area[f], mesh.area(f), 1e-12);
 }
 
 TEST(EdgeBisection, StopsWithTheLongestHalved) {

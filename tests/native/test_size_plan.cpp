@@ -201,6 +201,31 @@ TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {
   EXPECT_EQ(curves_of(0.003, true), 12u);
 }
 
+TEST(SizePlan, ACreaseWithSliversOnItIsOneCrease) {
+  // Two squares at a right angle; their common side is two sides, with slivers between that lie in no plane of note. Cut
+  // as short as quads are, their pieces are a hundred times wider for their length.
+  const double aside = 5e-8;
+  const auto crease_with = [&](bool has_two) {
+    std::vector<Vector3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0.5, aside, aside}};
+    std::vector<std::array<int, 3>> faces{{0, 6, 2}, {6, 1, 3}, {6, 3, 2}};
+    if (has_two) {
+      points.push_back({0.5, -aside, 2 * aside});
+      faces.insert(faces.end(), {{0, 1, 6}, {0, 7, 1}, {0, 4, 7}, {7, 4, 5}, {7, 5, 1}});
+    } else {
+      faces.insert(faces.end(), {{0, 1, 6}, {0, 4, 1}, {1, 4, 5}});
+    }
+    return TriangleMesh(points, faces);
+  };
+  for (const bool has_two : {false, true}) {
+    const ComponentPlan p = plan(crease_with(has_two), 0.02);
+    double length = 0;
+    for (int h = 0; h < p.mesh.halfedge_count(); ++h)
+      if (p.features.is_feature(h) && p.mesh.opposite(h) > h) length += p.mesh.edge_length(h);
+    EXPECT_NEAR(length, 1, 1e-3) << has_two;
+    EXPECT_EQ(p.given_way, 0) << has_two << ": nothing had to be taken away for that";
+  }
+}
+
 TEST(CountBudget, WhatOneTakesTheOthersPay) {
   std::vector<ComponentPlan> plans{plan(test::icosphere(3), 0.3), plan(test::icosphere(3), 0.2)};
   const double wanted = plans[0].quads + plans[1].quads;

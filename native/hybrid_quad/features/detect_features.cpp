@@ -5,6 +5,7 @@
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/features/crease_clarity.h"
+#include "hybrid_quad/features/crease_normals.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/features/parting_angle.h"
 #include "hybrid_quad/features/rounds.h"
@@ -15,7 +16,6 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kSliver = 1e-7;          ///< height over longest edge below which a face's normal is noise
 constexpr double kChainTurn = 45;         ///< degrees that a chain of weak edges may turn at a vertex
 constexpr double kChainShare = 0.5;       ///< longest chain of weak edges, as part of the strong set it continues
 constexpr double kQuadShare = 1.0 / 3;    ///< edge length of a quad, of the minimum length
@@ -30,8 +30,8 @@ constexpr double kReachShare = 0.28;      ///< least reach of a set, of the mini
 
 class FeatureDetector {
  public:
-  FeatureDetector(const TriangleMesh& mesh, const FeatureOptions& options)
-      : mesh_(mesh), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
+  FeatureDetector(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const FeatureOptions& options)
+      : mesh_(mesh), normal_(normals), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
         weight_(mesh.halfedge_count(), 1.0) {}
 
   void mark_given_edges();
@@ -52,7 +52,6 @@ class FeatureDetector {
   bool is_any(int h) const { return marked_[h] || by_angle_[h] || mesh_.is_boundary(h); }
   void set(std::vector<char>& flags, int h, char value) { flags[h] = flags[opposite_or_self(h)] = value; }
   int find_edge(int a, int b) const;
-  void compute_normals();
   double angle(int h) const;
   /// Calls visit(h) for a half-edge of every edge at v, h leaving v except for the last one of a boundary fan.
   template <class Visit>
@@ -75,14 +74,14 @@ class FeatureDetector {
   }
 
   const TriangleMesh& mesh_;
+  const std::vector<Vector3>& normal_;  ///< by face
   const FeatureOptions& options_;
   std::vector<char> marked_, by_angle_;
   double limit_ = 0;
   Rounds rounds_;  ///< of the edges by angle
   std::vector<char> is_too_small_;  ///< by round
   std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
-  double noise_share_ = 0;      ///< of the length of all edges by angle
-  std::vector<Vector3> normal_;
+  double noise_share_ = 0;  ///< of the length of all edges by angle
 };
 
 template <class Visit>
@@ -122,26 +121,6 @@ void FeatureDetector::mark_given_edges() {
                      "edge", unknown);
 }
 
-/// A sliver takes the normal of the face across its longest edge: its own one is rounding noise.
-void FeatureDetector::compute_normals() {
-  const int face_count = mesh_.face_count();
-  normal_.resize(face_count);
-  std::vector<int> across(face_count, -1);
-  for (int f = 0; f < face_count; ++f) {
-    normal_[f] = mesh_.normal(f);
-    int longest = 3 * f;
-    for (int h = 3 * f + 1; h < 3 * f + 3; ++h)
-      if (mesh_.edge_vector(h).squaredNorm() > mesh_.edge_vector(longest).squaredNorm()) longest = h;
-    if (2 * mesh_.area(f) <= kSliver * mesh_.edge_vector(longest).squaredNorm())
-      across[f] = mesh_.is_boundary(longest) ? f : mesh_.opposite(longest) / 3;
-  }
-  for (int f = 0; f < face_count; ++f) {
-    int g = f;
-    for (int step = 0; step < 32 && across[g] >= 0 && across[g] != g; ++step) g = across[g];
-    if (g != f && across[g] < 0) normal_[f] = normal_[g];
-  }
-}
-
 double FeatureDetector::angle(int h) const {
   const Vector3& a = normal_[h / 3];
   const Vector3& b = normal_[mesh_.opposite(h) / 3];
@@ -150,7 +129,6 @@ double FeatureDetector::angle(int h) const {
 
 void FeatureDetector::mark_by_angle(const RunContext& context) {
   if (!options_.use_sharp_angle || options_.sharp_angle > 180) return;
-  compute_normals();
   std::vector<int> halfedges;
   std::vector<BentEdge> edges;
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
@@ -391,8 +369,9 @@ std::vector<char> FeatureDetector::result() const {
 
 }  // namespace
 
-FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& options, const RunContext& context) {
-  FeatureDetector detector(mesh, options);
+FeatureGraph detect_features(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const FeatureOptions& options,
+                             const RunContext& context) {
+  FeatureDetector detector(mesh, normals, options);
   detector.mark_given_edges();
   detector.mark_by_angle(context);
   detector.continue_chains(context);
@@ -405,6 +384,10 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
   features.sharp_angle = detector.limit();
   features.rounds_left_out = detector.rounds_left_out();
   return features;
+}
+
+FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& options, const RunContext& context) {
+  return detect_features(mesh, crease_normals(mesh), options, context);
 }
 
 }  // namespace hybrid_quad

@@ -44,7 +44,11 @@ struct FeatureOptions {
 };
 
 /// Boundary edges, edges by angle and marked edges, traced into curves.
+/// \param normals  #F: of the faces, by which creases are told
 /// \throws InputError "unknown_edge" if a marked pair is no edge of the mesh
+FeatureGraph detect_features(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const FeatureOptions& options,
+                             const RunContext& context);
+/// By the mesh's own crease_normals.
 FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& options, const RunContext& context);
 
 /// Curves, corners and regions of a given set of feature half-edges. \param is_feature 3 #F, symmetric; boundary is added

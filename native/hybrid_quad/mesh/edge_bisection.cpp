@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -93,7 +94,9 @@ struct LongEdge {
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
                                const std::vector<EdgeSet>& chains, double most_splits) {
   std::vector<Mark> marks;
-  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks));
+  std::vector<int> faces(mesh.face_count());
+  std::iota(faces.begin(), faces.end(), 0);
+  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks), std::move(faces));
   split_edges_with_common_ends(edited);
   std::priority_queue<LongEdge> queue;
   const auto squared_length = [&](int h) { return static_cast<float>(edited.edge_vector(h).squaredNorm()); };
@@ -126,6 +129,7 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
     if (mark.chain >= 0) out.chains[mark.chain].push_back(out.marked_edges.back());
   }
   out.mesh = std::move(compacted.mesh);
+  out.face_source = std::move(compacted.face_region);
   return out;
 }
 

@@ -15,6 +15,7 @@ struct BisectedMesh {
   EdgeSet marked_edges;          ///< the parts of the marked edges and of the chains'
   std::vector<int> source;       ///< of each part: the marked edge it is of, one of those given; -1: only of a chain
   std::vector<EdgeSet> chains;   ///< the parts of each
+  std::vector<int> face_source;  ///< #F: the face that each is a part of
 };
 
 /// The same surface with no edge longer than `longest` and no two with the same two ends: edges are halved, longest first (Rivara 1984), so that what is

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "hybrid_quad/features/crease_normals.h"
 #include "hybrid_quad/mesh/edge_bisection.h"
 #include "hybrid_quad/pipeline/features_give_way.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
@@ -106,6 +107,15 @@ void plan_lengths(ComponentPlan& plan, PlaneSet mirror_planes, const RunContext&
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
 }
 
+/// The halves of a sliver are as wide, but not as long, and may seem to be none: they have the normal of the whole one.
+std::vector<Vector3> crease_normals_of_parts(const TriangleMesh& whole, const std::vector<int>& face_source) {
+  const std::vector<Vector3> of_whole = crease_normals(whole);
+  std::vector<Vector3> normals;
+  normals.reserve(face_source.size());
+  for (const int f : face_source) normals.push_back(of_whole[f]);
+  return normals;
+}
+
 double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch) {
   double sum = 0;
   for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, stretch));
@@ -179,7 +189,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
     for (const int v : chain_ends(plan.asked_chains[i])) features.corners.push_back(v);
   }
   plan.corners = features.corners;
-  plan.features = detect_features(plan.mesh, features, context);
+  plan.features = detect_features(plan.mesh, crease_normals_of_parts(mesh, fine.face_source), features, context);
   plan.sharp_angle = plan.features.sharp_angle;
   plan.given_way = plan.features.rounds_left_out;
   if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density);
