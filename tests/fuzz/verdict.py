@@ -54,7 +54,7 @@ def _outcome(case: Case, time_limit: float) -> tuple[str, str]:
 
     try:
         result = hybrid_quad.remesh(
-            case.vertices, case.faces, **_arguments(case), cancel=is_late, on_snapshot=look, threads=1
+            case.vertices, case.faces, **arguments_of(case), cancel=is_late, on_snapshot=look, threads=1
         )
     except hybrid_quad.InputError as error:
         good = error.code and str(error).endswith(".") and (error.code in NO_ELEMENTS or len(error.elements))
@@ -83,7 +83,8 @@ def _differences(mesh: Snapshot, quads: np.ndarray) -> list[str]:
     return [] if given == made else [f"topology {made} instead of {given}"]
 
 
-def _arguments(case: Case) -> dict[str, Any]:
+def arguments_of(case: Case) -> dict[str, Any]:
+    """The case's options as ``hybrid_quad.remesh`` takes them."""
     arguments = dict(case.options)
     if "strokes" in arguments:
         arguments["strokes"] = [hybrid_quad.Stroke(np.array(p), s, kind) for p, s, kind in arguments["strokes"]]

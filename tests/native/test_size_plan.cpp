@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
+#include "hybrid_quad/mesh/edge_bisection.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/remesh_components.h"
 #include "hybrid_quad/pipeline/size_plan.h"
@@ -159,6 +161,47 @@ TEST(SizePlan, TheBoundaryAndCountedCurvesNeverGiveWay) {
   };
   EXPECT_EQ(given_way({}), 1);
   EXPECT_EQ(given_way({{across.ends, 5}}), 0);
+}
+
+TEST(SizePlan, OfExactWishesWhatIsAFeatureBesidesStays) {
+  const TriangleMesh box = test::box(8, Vector3(1, 1, 1));
+  const auto edges_at = [&](double y, double z) {
+    EdgeSet edges;
+    for (int h = 0; h < box.halfedge_count(); ++h) {
+      const Vector3 &a = box.position(box.from(h)), &b = box.position(box.to(h));
+      if (a[1] == y && b[1] == y && a[2] == z && b[2] == z && a[0] < b[0]) edges.push_back({box.from(h), box.to(h)});
+    }
+    EXPECT_EQ(edges.size(), 8u);
+    return edges;
+  };
+  enum { kGuide, kGuideOnMark, kGuideOnCrease, kCounted };
+  const EdgeSet lines[] = {edges_at(0.25, 1), edges_at(0.5, 1), edges_at(1, 1), edges_at(0.75, 1)};
+  MarkedEdges marked;
+  for (const int line : {kGuide, kGuideOnMark, kGuideOnCrease})
+    for (const auto& edge : lines[line]) {
+      marked.ends.push_back(edge);
+      marked.guides.push_back(line);
+    }
+  HardGuides guides;
+  guides.sets = {{{0}, false, true}, {{0}, true, true}, {{0}, false, true}};
+  const ComponentPlan whole = plan_component(box, 0.2, marked, {{lines[kCounted], 9}}, Wishes{}, RemeshOptions{}, RunContext{});
+  const auto curve_along = [&](const ComponentPlan& p, int line) -> const FeatureCurve* {
+    for (int h = 0; h < p.mesh.halfedge_count(); ++h)
+      if (p.mesh.from(h) == lines[line][0][0] && p.mesh.to(h) == lines[line][0][1])
+        return p.features.is_feature(h) ? &p.features.curves[p.features.halfedge_curve[h]] : nullptr;
+    return nullptr;
+  };
+  for (const int line : {kGuide, kGuideOnMark, kGuideOnCrease, kCounted}) ASSERT_NE(curve_along(whole, line), nullptr) << line;
+  EXPECT_EQ(curve_along(whole, kCounted)->asked_count, 9);
+  const std::optional<ComponentPlan> without = without_exact_wishes(whole, guides, 0, RunContext{});
+  ASSERT_TRUE(without);
+  EXPECT_EQ(violations_of(without->features, without->mesh), std::vector<std::string>{});
+  EXPECT_EQ(curve_along(*without, kGuide), nullptr);
+  for (const int line : {kGuideOnMark, kGuideOnCrease, kCounted}) ASSERT_NE(curve_along(*without, line), nullptr) << line;
+  EXPECT_EQ(curve_along(*without, kCounted)->asked_count, 0);
+  EXPECT_EQ(without->marks_given_way, 1);
+  EXPECT_LE(without->quads, whole.quads);
+  EXPECT_FALSE(without_exact_wishes(*without, guides, 0, RunContext{})) << "nothing is left to let go";
 }
 
 TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {

@@ -84,4 +84,6 @@ def test_marks_that_no_valid_quads_have_room_for_give_way():
     assert result.report["flawed_quads"] == 0
     given_way = result.report["marks_given_way"]
     assert 0 < given_way < 40
-    assert any(f"{given_way} curves of marked edges gave way" in warning for warning in result.report["warnings"])
+    assert any(
+        f"{given_way} curves of marked edges or guides gave way" in warning for warning in result.report["warnings"]
+    )

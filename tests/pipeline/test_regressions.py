@@ -6,7 +6,7 @@ import pytest
 
 import hybrid_quad
 from fuzz.cases import load_case, make_case
-from fuzz.verdict import verdict_of
+from fuzz.verdict import arguments_of, verdict_of
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "regressions"
 SEEDS = range(12)  # of random cases, besides
@@ -30,6 +30,16 @@ def test_the_rim_of_a_flap_thin_as_a_hair_is_no_feature():
         report = hybrid_quad.remesh(case.vertices, case.faces, sharp_angle=40.0, **asked).report
         assert (report["flawed_quads"], report["extra_passes"]) == (0, 0), asked
         assert report["features_given_way"] > 0
+
+
+def test_guides_and_counts_give_way_where_they_leave_flawed_quads():
+    case = load_case(FOLDER / "guides_on_a_wire")
+    report = hybrid_quad.remesh(case.vertices, case.faces, **arguments_of(case)).report
+    assert (report["flawed_quads"], report["marks_given_way"]) == (0, 1)
+    assert report["quads"] < 2 * case.options["quads"]
+    assert [record["met"] for record in report["guides"]] == [False]
+    assert [record["got"] == record["asked"] for record in report["curve_counts"]] == [False]
+    assert any("marked edges or guides gave way" in warning for warning in report["warnings"])
 
 
 @pytest.mark.parametrize("seed", SEEDS)

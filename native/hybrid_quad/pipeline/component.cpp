@@ -242,6 +242,23 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
   }
 }
 
+/// At the very last, as marked edges do, what asks for edges of its own gives way to sound quads.
+void let_exact_wishes_give_way(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
+                               const HardGuides& guides, const RemeshOptions& options, ComponentResult& best, WorkBudget& budget,
+                               StageClock& clock, const RunContext& context) {
+  const std::optional<ComponentPlan> plan = without_exact_wishes(planned, guides, options.symmetry.planes, context);
+  if (!plan) return;
+  const double as_many = wanted * plan->quads / planned.quads;
+  try {
+    ComponentResult result = remesh_in_passes(*plan, std::nullopt, as_many, whole, wishes, guides, options, budget, clock, context);
+    result.passes += best.passes;
+    best.passes = result.passes;
+    if (result.flawed_quads < best.flawed_quads) best = std::move(result);
+  } catch (const InternalError&) {
+    ++best.repairs.broken_promises;
+  }
+}
+
 }  // namespace
 
 ComponentPreview preview_component(const ComponentPlan& planned, double wanted, const SurfaceIndex* whole,
@@ -259,10 +276,13 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
   const bool is_extractable = !extractable(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
   std::optional<FirstPass> first;
   if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context);
-  if (first) return remesh_in_passes(first->plan, std::move(first->result), wanted, whole, wishes, guides, options, budget, clock, context);
-  ComponentResult best = remesh_in_passes(planned, std::nullopt, wanted, whole, wishes, guides, options, budget, clock, context);
+  const ComponentPlan& plan = first ? first->plan : planned;
+  ComponentResult best = remesh_in_passes(plan, first ? std::optional(std::move(first->result)) : std::nullopt, wanted, whole, wishes, guides,
+                                          options, budget, clock, context);
   if (!planned.guides.empty() && options.improve)
     mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
+  if (best.flawed_quads > 0)
+    let_exact_wishes_give_way(plan, wanted, whole, wishes, guides, options, best, budget, clock, context);
   return best;
 }
 

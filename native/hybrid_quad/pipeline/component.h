@@ -29,7 +29,7 @@ struct ComponentResult {
   std::vector<LengthLimit> limits;  ///< shorter edges for each doubtful quad
   std::vector<Vector3> flawed_places;  ///< middles of flawed quads
   int features_given_way = 0;  ///< feature curves by angle that gave way to the number of quads, to others or to valid quads
-  int marks_given_way = 0;  ///< curves of marked edges that gave way to valid quads
+  int marks_given_way = 0;  ///< curves of marked edges and of guides that gave way to valid quads
   int missed_counts = 0;  ///< quad edges too many or too few on curves that were to get a certain number
   double extracted_quads = 0;  ///< in all tries of the pass
   double work = 0;       ///< of a WorkBudget, of these tries

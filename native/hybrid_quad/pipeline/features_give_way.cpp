@@ -112,6 +112,12 @@ bool widen_gaps(ComponentPlan& plan, double length, const HasRoom& has_room) {
   return plan.given_way > before;
 }
 
+bool is_sharp(const ComponentPlan& plan, int h) {
+  constexpr double kDegree = 3.14159265358979323846 / 180;
+  const Vector3 a = plan.mesh.normal(h / 3), b = plan.mesh.normal(plan.mesh.opposite(h) / 3);
+  return plan.sharp_angle > 0 && std::atan2(a.cross(b).norm(), a.dot(b)) > plan.sharp_angle * kDegree;
+}
+
 double usual_length(const ComponentPlan& plan) { return std::sqrt(plan.mesh.total_area() / plan.quads); }
 
 }  // namespace
@@ -150,6 +156,22 @@ bool make_room_in_marks_at(ComponentPlan& plan, const std::vector<Vector3>& plac
   take_away_at(plan, places, with_counted(plan, std::vector<char>(plan.mesh.halfedge_count(), 0)),
                [&](int a, int b) { return reach * std::max(plan.needed[a], plan.needed[b]); });
   return plan.given_way + plan.marks_given_way > before;
+}
+
+bool let_exact_wishes_go(ComponentPlan& plan, const HardGuides& guides) {
+  std::vector<char> remains = with_boundary(plan, with_counted(plan, std::vector<char>(plan.mesh.halfedge_count(), 0)));
+  bool any = !plan.guides.empty();
+  for (int h = 0; any && h < plan.mesh.halfedge_count(); ++h)
+    if (!remains[h] && plan.features.is_feature(h))
+      remains[h] = plan.guides[h] < 0 || guides.sets[plan.guides[h]].is_marked || is_sharp(plan, h);
+  if (any) take_features_away(plan, remains);
+  plan.guides.clear();
+  for (FeatureCurve& curve : plan.features.curves) {
+    any |= curve.asked_count > 0;
+    curve.asked_count = 0;
+  }
+  plan.asked_chains.clear();
+  return any;
 }
 
 }  // namespace hybrid_quad

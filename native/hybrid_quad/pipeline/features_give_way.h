@@ -2,12 +2,13 @@
 
 #include <vector>
 
+#include "hybrid_quad/pipeline/hard_guides.h"
 #include "hybrid_quad/pipeline/size_plan.h"
 
 namespace hybrid_quad {
 
 // Features that a plan goes without: by angle, counted in given_way (docs/decisions/0006, 0007, 0014), and at the very last marked
-// ones, in marks_given_way (0047). Boundaries and curves with an asked count always stay. Lengths are to be planned anew after each.
+// ones and hard guides, in marks_given_way (0047). Boundaries and curves with an asked count always stay. Lengths are to be planned anew after each.
 
 /// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays. None does where what is
 /// left lies on top of itself, as the rim of a flap thin as a hair.
@@ -28,5 +29,9 @@ bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);
 /// Takes away the features that pass near some places, those of marked edges too: a valid mesh is worth more than they are.
 /// \param reach  how near, in the edges that features there need \returns whether any
 bool make_room_in_marks_at(ComponentPlan& plan, const std::vector<Vector3>& places, double reach);
+
+/// Takes away what asks for edges of its own: hard guides, but not the sharp and the marked edges on which they lie, and asked counts
+/// along curves. \returns whether there was any
+bool let_exact_wishes_go(ComponentPlan& plan, const HardGuides& guides);
 
 }  // namespace hybrid_quad

@@ -205,7 +205,7 @@ void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts,
                        "quads: more quads, or marks, keep them");
   if (report.marks_given_way > 0)
     warnings.push_back(counted(report.marks_given_way, "curve") +
-                       " of marked edges gave way to valid quads: more quads, or fewer marks beside each other, keep them");
+                       " of marked edges or guides gave way to valid quads: more quads, or fewer marks beside each other, keep them");
   if (const std::string raised = sharp_angle_warning(run); !raised.empty()) warnings.push_back(raised);
   const int lone = run.options.narrow_quads > 1 ? lone_quads(result.mesh) : 0;
   if (lone > 0)

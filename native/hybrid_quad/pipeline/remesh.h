@@ -149,7 +149,7 @@ struct RemeshReport {
   PatchRecord patches;
   RepairRecord repairs;
   int features_given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
-  int marks_given_way = 0;  ///< curves of marked edges that gave way to valid quads
+  int marks_given_way = 0;  ///< curves of marked edges and of guides that gave way to valid quads
   double sharp_angle_used = 0;           ///< degrees above which edges by angle were looked at, the most of all components; 0: none were
   int flawed_quads = 0;                  ///< quads that point against the surface or have no area, after all passes
   std::vector<int> flawed_faces;  ///< those of the result that are so beyond doubt; with mirror images none are named

@@ -247,6 +247,16 @@ ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vect
                              [&](ComponentPlan& without) { return make_room_in_marks_at(without, places, reach); });
 }
 
+std::optional<ComponentPlan> without_exact_wishes(const ComponentPlan& plan, const HardGuides& guides, PlaneSet mirror_planes,
+                                                  const RunContext& context) {
+  ComponentPlan without = plan;
+  without.part = -1;
+  if (!let_exact_wishes_go(without, guides)) return std::nullopt;
+  plan_lengths(without, mirror_planes, context);
+  scale_plan(without, std::min(1.0, plan.quads / without.quads));  // they may have called for more than fit without them
+  return without;
+}
+
 void scale_plan(ComponentPlan& plan, double quads_factor) {
   for (double& length : plan.target) length /= std::sqrt(quads_factor);
   plan.quads *= quads_factor;

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hybrid_quad/features/curve_counts.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/pipeline/hard_guides.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/wishes.h"
 #include "hybrid_quad/sizing/feature_size.h"
@@ -35,7 +37,7 @@ struct ComponentPlan {
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
-  int marks_given_way = 0;  ///< curves of marked edges that gave way to valid quads
+  int marks_given_way = 0;  ///< curves of marked edges and of guides that gave way to valid quads
 };
 
 /// Edges that are features whatever their angle.
@@ -75,6 +77,10 @@ ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<V
 /// that have an asked count. \param reach  how near, in the edges that features there need
 ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vector3>& places, double reach,
                                PlaneSet mirror_planes, const RunContext& context);
+
+/// The plan for no more quads without hard guides and asked counts along curves, if there are any.
+std::optional<ComponentPlan> without_exact_wishes(const ComponentPlan& plan, const HardGuides& guides, PlaneSet mirror_planes,
+                                                  const RunContext& context);
 
 /// The same lengths for more or fewer quads.
 void scale_plan(ComponentPlan& plan, double quads_factor);
