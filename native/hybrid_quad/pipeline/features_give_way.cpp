@@ -159,19 +159,22 @@ bool make_room_in_marks_at(ComponentPlan& plan, const std::vector<Vector3>& plac
 }
 
 bool let_exact_wishes_go(ComponentPlan& plan, const HardGuides& guides) {
-  std::vector<char> remains = with_boundary(plan, with_counted(plan, std::vector<char>(plan.mesh.halfedge_count(), 0)));
-  bool any = !plan.guides.empty();
-  for (int h = 0; any && h < plan.mesh.halfedge_count(); ++h)
-    if (!remains[h] && plan.features.is_feature(h))
-      remains[h] = plan.guides[h] < 0 || guides.sets[plan.guides[h]].is_marked || is_sharp(plan, h);
-  if (any) take_features_away(plan, remains);
-  plan.guides.clear();
+  const bool has_guides = !plan.guides.empty();
+  bool has_counts = false;
+  if (has_guides) {
+    std::vector<char> remains = with_boundary(plan, with_counted(plan, std::vector<char>(plan.mesh.halfedge_count(), 0)));
+    for (int h = 0; h < plan.mesh.halfedge_count(); ++h)
+      if (!remains[h] && plan.features.is_feature(h))
+        remains[h] = plan.guides[h] < 0 || guides.sets[plan.guides[h]].is_marked || is_sharp(plan, h);
+    take_features_away(plan, remains);
+    plan.guides.clear();
+  }
   for (FeatureCurve& curve : plan.features.curves) {
-    any |= curve.asked_count > 0;
+    has_counts = has_counts || curve.asked_count > 0;
     curve.asked_count = 0;
   }
   plan.asked_chains.clear();
-  return any;
+  return has_guides || has_counts;
 }
 
 }  // namespace hybrid_quad
