@@ -14,7 +14,7 @@ SEEDS = range(12)  # of random cases, besides
 
 @pytest.mark.parametrize("name", sorted(path.name for path in FOLDER.glob("*") if (path / "options.json").exists()))
 def test_what_once_failed(name):
-    assert verdict_of(load_case(FOLDER / name), 60.0)["outcome"] in ("valid", "flawed", "refused")
+    assert verdict_of(load_case(FOLDER / name), 60.0)["outcome"] in ("valid", "refused")
 
 
 def test_few_flawed_quads_are_split_before_all_is_remeshed_anew():
@@ -42,10 +42,18 @@ def test_guides_and_counts_give_way_where_they_leave_flawed_quads():
     assert any("marked edges or guides gave way" in warning for warning in report["warnings"])
 
 
+def test_a_part_that_no_quads_follow_keeps_its_triangles():
+    case = load_case(FOLDER / "rows_of_needles")
+    report = hybrid_quad.remesh(case.vertices, case.faces, **arguments_of(case)).report
+    assert report["flawed_quads"] == 0
+    assert 0 < report["repairs"]["split_triangles"] < len(case.faces)
+    assert report["quads"] < 2 * case.options["quads"]
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_surfaces_with_random_wishes(seed):
     verdict = verdict_of(make_case(seed), 60.0)
-    assert verdict["outcome"] in ("valid", "flawed", "refused"), verdict
+    assert verdict["outcome"] in ("valid", "refused"), verdict
 
 
 def test_a_case_in_a_folder_is_the_same_case(tmp_path):

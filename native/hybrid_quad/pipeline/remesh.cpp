@@ -255,6 +255,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   raised_places += other.raised_places;
   ended_searches += other.ended_searches;
   opened_flat_quads += other.opened_flat_quads;
+  split_triangles += other.split_triangles;
   restored_quads += other.restored_quads;
   return *this;
 }

@@ -95,6 +95,7 @@ struct RepairRecord {
   int raised_places = 0;         ///< around quads of poor shape that got a better one in the end
   int ended_searches = 0;  ///< for better shapes, with quads left, as each look at the surface takes long
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
+  int split_triangles = 0;  ///< of components that are made of their own triangles, as all else left flawed quads
   int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws
 
   RepairRecord& operator+=(const RepairRecord& other);

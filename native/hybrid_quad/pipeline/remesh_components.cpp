@@ -8,6 +8,7 @@
 #include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/count_budget.h"
 #include "hybrid_quad/pipeline/finishing.h"
+#include "hybrid_quad/pipeline/split_triangles.h"
 
 namespace hybrid_quad {
 
@@ -85,6 +86,8 @@ std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex&
       const int i = job.component;
       job.result = remesh_component(run.plans[i], job.wanted, whole, run.wishes[i], run.guides, run.domain.options, job.budget,
                                     job.clock, progress.context_of(i, each));
+      if (job.result.flawed_quads > 0)
+        keep_triangles(run.components[i].mesh, run.plans[i], job.wanted, whole, each.threads, job.result);
     });
     const WorkBudget before = work;
     for (Job& job : jobs) {
