@@ -39,7 +39,7 @@ def read_results(path: Path, *builds: str) -> dict[str, Outcome]:
 
 def pack_results(done: dict[str, Outcome], path: Path) -> None:
     """Writes what is done; of reports what a summary needs, of judgements what failed, no messages: they say where files lay."""
-    kept = ("quads", "field_singularities", "irregular_vertices", "code", "warnings")
+    kept = ("quads", "field_singularities", "irregular_vertices", "flawed_quads", "code", "warnings")
     with lzma.open(path, "wt") as file:
         for name, outcome in sorted(done.items()):
             row = {"name": name, **outcome.as_json()}
