@@ -14,7 +14,7 @@ ComponentPlan plan_of(const TriangleMesh& mesh, double length) {
   return plan_component(mesh, length, {}, {}, Wishes{}, RemeshOptions{}, RunContext{});
 }
 
-/// One quad that goes through a surface and has no area, as far as a component's result is concerned.
+/// A component's result with so many quads, one of which counts as flawed.
 ComponentResult flawed_result(std::size_t quads) {
   ComponentResult result;
   result.mesh.quads.assign(quads, {0, 1, 2, 3});

@@ -10,9 +10,8 @@ from fuzz.verdict import arguments_of, verdict_of
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "regressions"
 SEEDS = range(12)  # of random cases, besides
-STILL_FLAWED = {
-    "thin_as_a_hair"
-}  # one quad of 525, between features six millionths of its length apart; what had failed is the time
+# One quad of 525, between features six millionths apart where quads are thousandths long. What failed was the time.
+STILL_FLAWED = {"thin_as_a_hair"}
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in FOLDER.glob("*") if (path / "options.json").exists()))
