@@ -38,15 +38,6 @@ py::array_t<std::uint8_t> kinds_of(const QuadMesh& mesh) {
   return array_from_values(kinds);
 }
 
-std::vector<std::string> all_violations_of(const QuadMesh& mesh) {
-  if (mesh.quads.empty()) return {"no quads"};
-  std::vector<std::string> found = violations_of(mesh);
-  if (!found.empty()) return found;
-  const std::vector<int> flat = quads_without_area(mesh);
-  if (!flat.empty()) found.push_back(std::to_string(flat.size()) + " quads without area, the first is " + std::to_string(flat.front()));
-  return found;
-}
-
 }  // namespace
 
 void bind_meshes(py::module_& module) {
@@ -65,7 +56,7 @@ void bind_meshes(py::module_& module) {
       .def("obj_text", [](const RemeshResult& result) { return py::bytes(obj_text(result.mesh.positions, result.mesh.quads)); }, "The bytes of an OBJ file.")
       .def_property_readonly("report", [](const RemeshResult& result) { return dict_of_report(result.report); }, "Counts, quality, timings and warnings.")
       .def("__len__", [](const RemeshResult& result) { return result.mesh.quads.size(); })
-      .def("violations", [](const RemeshResult& result) { return all_violations_of(result.mesh); }, "What keeps it from being a valid pure-quad mesh, in sentences.");
+      .def("violations", [](const RemeshResult& result) { return violations_of_result(result.mesh); }, "What keeps it from being a valid pure-quad mesh, in sentences.");
 }
 
 }  // namespace hybrid_quad

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/editable_mesh.h"
 #include "hybrid_quad/mesh/mesh_builder.h"
+#include "hybrid_quad/mesh/topology.h"
 #include "support/meshes.h"
 
 namespace hybrid_quad {
@@ -372,6 +374,69 @@ TEST(EditableMesh, RandomOperationsKeepTheTopology) {
     const TriangleMesh again(end.positions(), end.faces());  // no edge is doubled
     EXPECT_EQ(again.opposites(), end.opposites());
   }
+}
+
+/// A cube whose faces are gridded without regard to each other, each with corners of its own.
+PolygonSoup unwelded_cube(const std::array<int, 6>& grids) {
+  PolygonSoup soup;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3, n = grids[side], first = static_cast<int>(soup.positions.size());
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        Vector3 p;
+        p[axis] = side % 2;
+        p[u] = static_cast<double>(i) / n;
+        p[v] = static_cast<double>(j) / n;
+        soup.positions.push_back(p);
+      }
+    const auto at = [&](int i, int j) { return first + i * (n + 1) + j; };
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        std::vector<int> corners{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+        if (side % 2 == 0) std::reverse(corners.begin(), corners.end());
+        add_face(soup, corners);
+      }
+  }
+  return soup;
+}
+
+TEST(MeshBuilder, ClosesCracksOfUnweldedFacesThatAreGriddedDifferently) {
+  for (const std::array<int, 6>& grids :
+       {std::array{1, 1, 2, 2, 2, 2}, std::array{3, 3, 2, 2, 2, 2}, std::array{1, 2, 3, 4, 5, 6}, std::array{4, 4, 4, 4, 4, 5}}) {
+    const BuiltMesh built = build_mesh(unwelded_cube(grids));
+    EXPECT_EQ(topology_of(built.mesh), (Topology{1, 2, 0}));
+    EXPECT_NEAR(signed_volume(built.mesh), 1, 1e-9);
+    EXPECT_TRUE(has_defect(built.defects, "unwelded_vertex"));
+    EXPECT_TRUE(has_defect(built.defects, "t_junction"));
+    EXPECT_FALSE(has_defect(built.defects, "touching_vertex"));
+  }
+}
+
+TEST(MeshBuilder, PartsThinAsAHairAreLeftOutOrRefused) {
+  PolygonSoup needle;
+  needle.positions = {{0, 0, 0}, {1e7, 0, 0}, {5e6, 1, 0}};
+  add_face(needle, {0, 1, 2});
+  EXPECT_EQ(refusal(needle), "thin_component");
+  needle.positions[2][1] = 1e3;
+  EXPECT_EQ(refusal(needle), "");
+  PolygonSoup both = test::soup_of(test::icosphere(2, 100));
+  const int first = static_cast<int>(both.positions.size());
+  for (const Vector3& p : {Vector3(200, 0, 0), Vector3(300, 0, 0), Vector3(250, 1e-4, 0)}) both.positions.push_back(p);
+  add_face(both, {first, first + 1, first + 2});
+  const BuiltMesh built = build_mesh(both);
+  EXPECT_EQ(topology_of(built.mesh), (Topology{1, 2, 0}));
+  EXPECT_TRUE(has_defect(built.defects, "thin_component"));
+}
+
+TEST(MeshBuilder, RefusesCoordinatesThatOverflowOrHaveNoDigits) {
+  PolygonSoup soup = test::soup_of(test::icosphere(1));
+  for (Vector3& p : soup.positions) p *= 1.5e308;
+  EXPECT_EQ(refusal(soup), "coordinates_too_large");
+  for (Vector3& p : soup.positions) p *= 1e-8;
+  EXPECT_EQ(refusal(soup), "");
+  soup = test::soup_of(test::icosphere(1));
+  for (Vector3& p : soup.positions) p *= 1e-320;
+  EXPECT_EQ(refusal(soup), "coordinates_too_coarse");
 }
 
 }  // namespace

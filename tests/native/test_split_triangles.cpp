@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hybrid_quad/pipeline/finishing.h"
+#include "hybrid_quad/mesh/topology.h"
 #include "hybrid_quad/pipeline/split_triangles.h"
 #include "support/meshes.h"
 
@@ -19,6 +20,7 @@ ComponentResult flawed_result(std::size_t quads) {
   ComponentResult result;
   result.mesh.quads.assign(quads, {0, 1, 2, 3});
   result.flawed_quads = 1;
+  result.area = 6;
   result.rings = {{0, 1, 0}};
   return result;
 }
@@ -32,7 +34,7 @@ TEST(SplitTriangles, AreQuadsInTheSurfaceOnTheCurvesOfThePlan) {
     ASSERT_TRUE(quads);
     EXPECT_EQ(quads->quads.size(), static_cast<std::size_t>(3 * surface.face_count()));
     EXPECT_EQ(violations_of(*quads), std::vector<std::string>{});
-    EXPECT_EQ(euler_characteristic(*quads), surface.euler_characteristic());
+    EXPECT_EQ(topology_of(*quads), topology_of(surface));
     EXPECT_TRUE(flawed_quads(*quads, *plan.index, least_agreement(*plan.index)).empty());
     double on_curves = 0, curves = 0;
     for (const QuadMesh::FeatureEdge& e : quads->feature_edges) {
@@ -62,6 +64,9 @@ TEST(SplitTriangles, TakeThePlaceOfFlawedQuadsWhereTheyAreFewEnough) {
   EXPECT_EQ(taken.mesh.quads.size(), 144u);
   EXPECT_EQ(taken.flawed_quads, 0);
   EXPECT_EQ(taken.repairs.split_triangles, 48);
+  EXPECT_EQ(taken.patches.combinatorial, 1);
+  EXPECT_EQ(taken.combinatorial_area, taken.area);
+  EXPECT_EQ(taken.warnings.size(), 1u);
   EXPECT_EQ(taken.features.curves.size(), 12u);
   EXPECT_TRUE(taken.rings.empty());
   EXPECT_EQ(kept(10, flawed_result(80)).mesh.quads.size(), 144u);

@@ -15,6 +15,7 @@ namespace {
 constexpr double kSamples = 4;       ///< a gap
 constexpr double kLeastLine = 2;     ///< gaps; what is shorter goes
 constexpr double kMostCovered = 0.5;
+constexpr double kMostSamples = 1e6;  ///< along all curves: of a surface thin as a hair there would be as many as its length has widths
 const double kStraightOn = std::cos(40 * 3.14159265358979323846 / 180);
 
 /// Points in cubes as large as the distance that is asked for.
@@ -62,8 +63,8 @@ struct Line {
 
 class LineChoice {
  public:
-  LineChoice(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept, double gap)
-      : mesh_(mesh), features_(features), gap_(gap), taken_points_(gap), taken_(features.curves.size(), 0),
+  LineChoice(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept, double gap, const RunContext& context)
+      : mesh_(mesh), features_(features), context_(context), gap_(gap), taken_points_(gap), taken_(features.curves.size(), 0),
         kept_(features.curves.size(), 0), at_end_(features.curves.size(), std::array<int, 2>{-1, -1}),
         length_(features.curves.size(), 0), bend_(features.curves.size(), 0) {
     for (int h = 0; h < mesh.halfedge_count(); ++h) {
@@ -175,6 +176,8 @@ class LineChoice {
       const double length = (points[i + 1] - points[i]).norm();
       const int parts = std::max(1, static_cast<int>(std::ceil(kSamples * length / gap_)));
       for (int k = 0; k < parts; ++k) {
+        constexpr int kSamplesAPoll = 1 << 14;
+        if (++samples_ % kSamplesAPoll == 0) context_.checkpoint();
         const double t = (k + 0.5) / parts;
         visit((1 - t) * points[i] + t * points[i + 1], arc + t * length, length / parts);
       }
@@ -227,18 +230,29 @@ class LineChoice {
 
   const TriangleMesh& mesh_;
   const FeatureGraph& features_;
+  const RunContext& context_;
   double gap_;
   NearbyPoints taken_points_;
   std::vector<char> taken_, kept_;           // by curve
   std::vector<std::array<int, 2>> at_end_;   // by curve and end: 2 curve + end that it goes straight on into, -1: none
   std::vector<double> length_, bend_;        // by curve
+  mutable long long samples_ = 0;            // taken so far
 };
 
 }  // namespace
 
 std::vector<char> features_with_room(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept,
-                                     double gap) {
-  return LineChoice(mesh, features, is_kept, gap).run();
+                                     double gap, const RunContext& context) {
+  context.checkpoint();
+  double length = 0;
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (features.is_feature(h) && mesh.opposite(h) < h) length += mesh.edge_length(h);
+  if (kSamples * length > kMostSamples * gap) {
+    std::vector<char> all(mesh.halfedge_count());
+    for (int h = 0; h < mesh.halfedge_count(); ++h) all[h] = features.is_feature(h);
+    return all;
+  }
+  return LineChoice(mesh, features, is_kept, gap, context).run();
 }
 
 }  // namespace hybrid_quad

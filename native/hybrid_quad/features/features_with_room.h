@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
 
 namespace hybrid_quad {
@@ -9,8 +10,8 @@ namespace hybrid_quad {
 /// taken goes, as do lines and pieces that are hardly longer than it.
 /// \param is_kept  3 #F: half-edges of features that stay whatever else there is, both sides of an edge alike
 /// \param gap  scene units
-/// \returns 3 #F: half-edges of features that remain
+/// \returns 3 #F: half-edges of features that remain; all of them where they are as long as of a surface thin as a hair
 std::vector<char> features_with_room(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept,
-                                     double gap);
+                                     double gap, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -114,11 +114,8 @@ class LimitFit {
  private:
   template <class Work>
   void over_samples(const Work& work) const {
-    constexpr int kChunk = 512;
-    const int count = static_cast<int>(samples_.size()), chunks = (count + kChunk - 1) / kChunk;
-    context_.checkpoint();
-    parallel_for(chunks, context_.threads, [&](int c) {
-      for (int i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) work(i);
+    parallel_chunks(static_cast<int>(samples_.size()), context_, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) work(i);
     });
   }
 
@@ -231,12 +228,13 @@ int hold_back(const QuadMesh& mesh, const SurfaceIndex& surface, Points& moves, 
   const auto shape_of = [](const std::array<Vector3, 4>& c) { return scaled_jacobian(c[0], c[1], c[2], c[3]); };
   std::vector<char> is_held(mesh.positions.size(), 0), is_bad(quads, 0);
   for (int round = 0;; ++round) {
-    context.checkpoint();
-    parallel_for(quads, context.threads, [&](int q) {
-      const std::array<Vector3, 4> before = corners_of(q, false), now = corners_of(q, true);
-      const double shape = shape_of(now);
-      is_bad[q] = (shape < kGoodEnough && shape < shape_of(before) - kLoss) ||
-                  (is_inverted(now, surface) && !is_inverted(before, surface));
+    parallel_chunks(quads, context, [&](int begin, int end) {
+      for (int q = begin; q < end; ++q) {
+        const std::array<Vector3, 4> before = corners_of(q, false), now = corners_of(q, true);
+        const double shape = shape_of(now);
+        is_bad[q] = (shape < kGoodEnough && shape < shape_of(before) - kLoss) ||
+                    (is_inverted(now, surface) && !is_inverted(before, surface));
+      }
     });
     bool any = false;
     std::vector<char> is_next(mesh.positions.size(), 0);

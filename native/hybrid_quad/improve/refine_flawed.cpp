@@ -10,7 +10,7 @@
 #include "hybrid_quad/improve/mend.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/workpiece.h"
-#include "hybrid_quad/mesh/quad_complex.h"
+#include "hybrid_quad/mesh/topology.h"
 
 namespace hybrid_quad {
 
@@ -90,7 +90,7 @@ class FlawedRefiner {
     std::vector<int> left = memory_.flawed_of(mesh);
     const bool is_better = left.size() < flawed_.size();
     if (!is_better && left.size() >= fewest_left_) return false;
-    if (!violations_of(mesh).empty() || euler_characteristic(mesh) != euler_characteristic(quads_)) return false;
+    if (!violations_of(mesh).empty() || topology_of(mesh) != topology_of(quads_)) return false;
     fewest_left_ = left.size();
     if (is_better) {
       quads_ = std::move(mesh);

@@ -12,7 +12,7 @@
 #include "hybrid_quad/improve/side_splitting.h"
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/workpiece.h"
-#include "hybrid_quad/mesh/quad_complex.h"
+#include "hybrid_quad/mesh/topology.h"
 
 namespace hybrid_quad {
 
@@ -61,7 +61,7 @@ class FlawedSplitter {
   };
 
   bool is_valid(const QuadMesh& mesh) const {
-    return violations_of(mesh).empty() && euler_characteristic(mesh) == euler_characteristic(quads_);
+    return violations_of(mesh).empty() && topology_of(mesh) == topology_of(quads_);
   }
 
   /// Splits a side of a flawed quad: the first found that leaves fewer flawed ones, else the first that leaves as many; `flawed`

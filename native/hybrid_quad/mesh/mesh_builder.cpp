@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -28,6 +29,8 @@ constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
+constexpr double kLeastWidth = 2e-6;  ///< of a part: its area over the square of its box's diagonal
+constexpr double kMostCoordinate = 1e-3 * std::numeric_limits<double>::max();  ///< beyond it differences, and their sums, overflow
 constexpr double kLeastShare = 1e-9;     ///< of the area; parts with less are specks, a thirty thousandth as long as the rest
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
@@ -54,6 +57,7 @@ class MeshBuilder {
   [[noreturn]] void refuse_coarse_coordinates();
   void make_triangles();
   void weld();
+  void weld_exactly();
   bool merge_vertices(const std::vector<int>& target);
   void drop_copied_parts();
   void drop_duplicates();
@@ -82,6 +86,7 @@ class MeshBuilder {
   double farthest_ = 0;  ///< the largest of the given coordinates, without its sign
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
+  std::vector<int> welded_;  ///< vertices merged with others at the same place
   std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
 };
 
@@ -124,6 +129,10 @@ void MeshBuilder::check_positions() {
     if (!given_.positions[v].allFinite()) bad.push_back(v);
   }
   if (!bad.empty()) refuse("non_finite_vertex", "Vertices have coordinates that are no finite numbers.", "vertex", std::move(bad));
+  for (const int v : used)
+    if (given_.positions[v].cwiseAbs().maxCoeff() > kMostCoordinate) bad.push_back(v);
+  if (!bad.empty())
+    refuse("coordinates_too_large", "Vertices have coordinates too large to compute with.", "vertex", std::move(bad));
 
   std::vector<Vector3> points;
   for (const int v : used) points.push_back(given_.positions[v]);
@@ -152,7 +161,8 @@ void MeshBuilder::normalize_positions() {
   const Vector3 half = high - centre;
   const double size = half.maxCoeff();
   if (!(size > 0)) refuse("no_area", "All vertices lie at the same place.", "", {});
-  farthest_ = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+  // Below the least normal number digits are lost as they are far from the origin.
+  farthest_ = std::max(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), std::numeric_limits<double>::min());
   if (size < kLeastExtent * farthest_) refuse_coarse_coordinates();
   const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
   positions_.reserve(given.size());
@@ -223,17 +233,27 @@ bool MeshBuilder::merge_vertices(const std::vector<int>& target) {
   return changed;
 }
 
+/// Vertices that are merged into others.
+std::vector<int> merged(const std::vector<int>& target) {
+  std::vector<int> list;
+  for (int v = 0; v < static_cast<int>(target.size()); ++v)
+    if (target[v] != v) list.push_back(v);
+  return list;
+}
+
+void MeshBuilder::weld_exactly() {
+  const std::vector<int> target = welded_vertices(positions_, triangles_);
+  if (!merge_vertices(target)) return;
+  const std::vector<int> list = merged(target);
+  welded_.insert(welded_.end(), list.begin(), list.end());
+  std::sort(welded_.begin(), welded_.end());
+  welded_.erase(std::unique(welded_.begin(), welded_.end()), welded_.end());
+}
+
 void MeshBuilder::weld() {
-  const auto merged = [](const std::vector<int>& target) {
-    std::vector<int> list;
-    for (int v = 0; v < static_cast<int>(target.size()); ++v)
-      if (target[v] != v) list.push_back(v);
-    return list;
-  };
-  std::vector<int> target = welded_vertices(positions_, triangles_);
-  if (merge_vertices(target)) note("unwelded_vertex", "vertex", merged(target), "merged with the vertex at the same place");
+  weld_exactly();
   if (triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
-  target = nearly_welded_vertices(positions_, kLooseTolerance);
+  const std::vector<int> target = nearly_welded_vertices(positions_, kLooseTolerance);
   const auto triangles = triangles_;
   const auto polygon = polygon_;
   merge_vertices(target);
@@ -338,8 +358,8 @@ void resolve_faces(BuiltMesh& built) {
 /// their places in the input.
 void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   const TriangleMesh& mesh = built.mesh;
-  const std::vector<Weight> weight = weight_of_faces(mesh, kLeastShare);
-  std::vector<int> tiny;
+  const std::vector<Weight> weight = weight_of_faces(mesh, kLeastShare, kLeastWidth);
+  std::vector<int> tiny, thin;
   BuiltMesh kept;
   std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
   std::vector<Vector3> positions;
@@ -347,6 +367,8 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   for (int f = 0; f < mesh.face_count(); ++f)
     if (weight[f] == Weight::kTiny) {
       tiny.push_back(built.input_face[f]);
+    } else if (weight[f] == Weight::kThin) {
+      thin.push_back(built.input_face[f]);
     } else if (weight[f] == Weight::kCounts) {
       new_face[f] = static_cast<int>(kept.input_face.size());
       kept.input_face.push_back(built.input_face[f]);
@@ -366,9 +388,14 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
         opposite.push_back(o < 0 ? -1 : 3 * new_face[o / 3] + o % 3);
       }
     }
+  for (std::vector<int>* list : {&tiny, &thin}) {
+    std::sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  if (faces.empty() && !thin.empty())
+    refuse("thin_component", "The mesh is as thin as a hair: hundreds of thousands of times as long as wide.", "face", std::move(thin));
   if (faces.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
-  std::sort(tiny.begin(), tiny.end());
-  tiny.erase(std::unique(tiny.begin(), tiny.end()), tiny.end());
+  note("thin_component", "face", std::move(thin), "left out: hundreds of thousands of times as long as wide");
   note("tiny_component", "face", std::move(tiny), "left out: too small beside the rest for quads with an area");
   kept.mesh = TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
   built = std::move(kept);
@@ -390,8 +417,11 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   drop_duplicates();
   context.checkpoint();
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
-  note("t_junction", "vertex", split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_),
-       "the edge beside it is split, which closes the crack");
+  std::vector<int> split_at = split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_);
+  // Their parts may lie exactly on other open edges, as the whole ones did not.
+  if (!split_at.empty()) weld_exactly();
+  note("unwelded_vertex", "vertex", std::move(welded_), "merged with the vertex at the same place");
+  note("t_junction", "vertex", std::move(split_at), "the edge beside it is split, which closes the crack");
   context.checkpoint();
   BuiltMesh built = glue();
   context.checkpoint();

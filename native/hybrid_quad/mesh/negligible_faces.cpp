@@ -1,5 +1,7 @@
 #include "hybrid_quad/mesh/negligible_faces.h"
 
+#include <cmath>
+
 #include "hybrid_quad/mesh/degenerate_faces.h"
 
 namespace hybrid_quad {
@@ -10,6 +12,7 @@ struct Part {
   std::vector<int> faces;
   double area = 0;
   bool has_area = false;
+  Vector3 low = Vector3::Constant(HUGE_VAL), high = Vector3::Constant(-HUGE_VAL);
 };
 
 std::vector<Part> parts_of(const TriangleMesh& mesh) {
@@ -26,6 +29,8 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
       const Vector3 &a = mesh.position(t[0]), &b = mesh.position(t[1]), &c = mesh.position(t[2]);
       part.area += 0.5 * (b - a).cross(c - a).norm();
       part.has_area = part.has_area || !has_no_area(a, b, c);
+      part.low = part.low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
+      part.high = part.high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
       for (int h = 3 * f; h < 3 * f + 3; ++h) {
         const int o = mesh.opposite(h);
         if (o < 0 || is_seen[o / 3]) continue;
@@ -40,14 +45,15 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<Weight> weight_of_faces(const TriangleMesh& mesh, double least_share) {
+std::vector<Weight> weight_of_faces(const TriangleMesh& mesh, double least_share, double least_width) {
   const std::vector<Part> parts = parts_of(mesh);
   double whole = 0;
   for (const Part& part : parts) whole += part.area;
   std::vector<Weight> weight(mesh.face_count(), Weight::kCounts);
   for (const Part& part : parts) {
-    if (part.has_area && part.area >= least_share * whole) continue;
-    for (const int f : part.faces) weight[f] = part.has_area ? Weight::kTiny : Weight::kNoArea;
+    const bool is_tiny = part.area < least_share * whole, is_thin = part.area < least_width * (part.high - part.low).squaredNorm();
+    if (part.has_area && !is_tiny && !is_thin) continue;
+    for (const int f : part.faces) weight[f] = !part.has_area ? Weight::kNoArea : is_tiny ? Weight::kTiny : Weight::kThin;
   }
   return weight;
 }

@@ -173,4 +173,13 @@ std::vector<int> quads_without_area(const QuadMesh& mesh) {
   return flat;
 }
 
+std::vector<std::string> violations_of_result(const QuadMesh& mesh) {
+  if (mesh.quads.empty()) return {"no quads"};
+  std::vector<std::string> found = violations_of(mesh);
+  if (!found.empty()) return found;
+  const std::vector<int> flat = quads_without_area(mesh);
+  if (!flat.empty()) found.push_back(std::to_string(flat.size()) + " quads without area, the first is " + std::to_string(flat.front()));
+  return found;
+}
+
 }  // namespace hybrid_quad

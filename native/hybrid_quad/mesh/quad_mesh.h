@@ -40,4 +40,7 @@ std::vector<std::string> violations_of(const QuadMesh& mesh);
 /// Quads whose area vector is nothing beside a square of the mean edge length, ascending.
 std::vector<int> quads_without_area(const QuadMesh& mesh);
 
+/// What a result may not have: no quads, what violations_of finds, quads without area.
+std::vector<std::string> violations_of_result(const QuadMesh& mesh);
+
 }  // namespace hybrid_quad

@@ -77,15 +77,19 @@ bool cross_each_other(const Triangle& a, const Triangle& b) {
 std::vector<int> self_intersecting_faces(const SurfaceIndex& index) {
   const TriangleMesh& mesh = index.mesh();
   std::vector<char> found(mesh.face_count(), 0);
+  // Where thousands of faces lie about one place, as around the tip of a fan, every pair of them would be looked at.
+  constexpr double kLeastPairs = 1e7, kPairsAFace = 100;
+  double pairs_left = kLeastPairs + kPairsAFace * mesh.face_count();
   const auto triangle = [&mesh](int f) {
     const auto& t = mesh.face(f);
     return Triangle{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   };
-  for (int f = 0; f < mesh.face_count(); ++f) {
+  for (int f = 0; f < mesh.face_count() && pairs_left > 0; ++f) {
     if (found[f]) continue;
     const Triangle t = triangle(f);
     const Vector3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
     index.any_in_box(low, high, [&](int g) {
+      if (--pairs_left < 0) return true;
       if (g == f || !cross_each_other(t, triangle(g))) return false;
       found[f] = found[g] = 1;
       return true;

@@ -52,6 +52,9 @@ std::vector<std::pair<double, int>> vertices_inside(const std::vector<Vector3>& 
     if ((d - e * (along / length)).norm() <= tolerance) inside.push_back({along, *it});
   }
   std::sort(inside.begin(), inside.end());
+  // Of several at one place, which are to be merged yet, one does.
+  const auto is_at = [&](const auto& x, const auto& y) { return positions[x.second] == positions[y.second]; };
+  inside.erase(std::unique(inside.begin(), inside.end(), is_at), inside.end());
   return inside;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/attempts.h"
 #include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
@@ -98,9 +99,10 @@ struct FirstPass {
 
 /// Where features by angle are shorter than quads, a pass without what crowds them tells whether quads are better off; where very many are,
 /// they are (docs/decisions/0043).
+/// \param broken  gets the promises that broke where that leaves no first pass
 std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
                                              const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
-                                             const RunContext& context) {
+                                             const RunContext& context, ComponentResult& broken) {
   constexpr double kBetter = 0.02;
   constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
   constexpr double kBeyondDoubt = 0.12, kVeryMany = 30;
@@ -123,8 +125,9 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
     });
     for (const StageClock& one : clocks) clock.add(one);
     return mean_shape(roomy.result.mesh) > mean_shape(full.result.mesh) + kBetter ? roomy : full;
-  } catch (const InternalError&) {
-    return std::nullopt;  // the passes that follow say what broke
+  } catch (const InternalError& error) {
+    record_broken_promise(error, broken.repairs, broken.warnings);
+    return std::nullopt;
   }
 }
 
@@ -187,11 +190,13 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
       else
         first_work = result.work;
       if (!any || badness(result) < badness(best)) {
+        keep_broken_promises(best, result);
         best = std::move(result);
         plan_of_best = &unrefined;
         split_in_vain = in_vain;
       } else {
         best.passes = result.passes;
+        keep_broken_promises(result, best);
       }
       any = true;
       if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
@@ -203,6 +208,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
     } catch (const InternalError& error) {
       broken = error.what();
       ++best.passes;
+      record_broken_promise(error, best.repairs, best.warnings);
     }
     begin = end;
     end += 0.5 * (1 - end);
@@ -232,11 +238,15 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
       best.passes = result.passes;
       missed = missed_loops(plan, guides, result);
       const bool is_sound = result.flawed_quads <= best.flawed_quads && result.missed_counts <= best.missed_counts;
-      if (!is_sound || missed.excess >= least_excess) continue;
+      if (!is_sound || missed.excess >= least_excess) {
+        keep_broken_promises(result, best);
+        continue;
+      }
       least_excess = missed.excess;
+      keep_broken_promises(best, result);
       best = std::move(result);
-    } catch (const InternalError&) {
-      ++best.repairs.broken_promises;
+    } catch (const InternalError& error) {
+      record_broken_promise(error, best.repairs, best.warnings);
       return;
     }
   }
@@ -253,9 +263,11 @@ void let_exact_wishes_give_way(const ComponentPlan& planned, double wanted, cons
     ComponentResult result = remesh_in_passes(*plan, std::nullopt, as_many, whole, wishes, guides, options, budget, clock, context);
     result.passes += best.passes;
     best.passes = result.passes;
-    if (result.flawed_quads < best.flawed_quads) best = std::move(result);
-  } catch (const InternalError&) {
-    ++best.repairs.broken_promises;
+    const bool is_better = result.flawed_quads < best.flawed_quads;
+    if (is_better) std::swap(best, result);
+    keep_broken_promises(result, best);
+  } catch (const InternalError& error) {
+    record_broken_promise(error, best.repairs, best.warnings);
   }
 }
 
@@ -275,10 +287,12 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
                                  const RunContext& context) {
   const bool is_extractable = !extractable(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
   std::optional<FirstPass> first;
-  if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context);
+  ComponentResult broken;
+  if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context, broken);
   const ComponentPlan& plan = first ? first->plan : planned;
   ComponentResult best = remesh_in_passes(plan, first ? std::optional(std::move(first->result)) : std::nullopt, wanted, whole, wishes, guides,
                                           options, budget, clock, context);
+  keep_broken_promises(broken, best);
   if (!planned.guides.empty() && options.improve)
     mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
   if (best.flawed_quads > 0)

@@ -9,6 +9,7 @@
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/mesh/quad_count.h"
 #include "hybrid_quad/mesh/straight_quads.h"
+#include "hybrid_quad/pipeline/attempts.h"
 #include "hybrid_quad/pipeline/count_search.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/extraction.h"
@@ -18,6 +19,7 @@
 #include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/stage_cache.h"
+#include "hybrid_quad/pipeline/validity.h"
 #include "hybrid_quad/sizing/feature_size.h"
 #include "hybrid_quad/sizing/sizing.h"
 #include "hybrid_quad/symmetry/symmetry.h"
@@ -26,19 +28,10 @@ namespace hybrid_quad {
 
 namespace {
 
-/// How the extraction is tried when a stage's promise breaks: as designed, with integers as Psi gives them, and with no
-/// regular part at all, where only the patches' guarantee is needed.
-enum class Attempt { kFull, kWithoutCancellation, kPatchesOnly };
-
 constexpr double kShorterWhereFlawed = 0.6;
 constexpr double kShareOfTolerance = 0.6;  ///< that rows of quads are fitted to: improvement takes its own
 /// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
 double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
-
-template <class Violations>
-void require_sound(const std::string& stage, const Violations& violations) {
-  if (!violations.empty()) throw InternalError(stage, violations.front());
-}
 
 class ComponentRemesher {
  public:
@@ -48,6 +41,7 @@ class ComponentRemesher {
                     const RunContext& context)
       : plan_(plan),
         mesh_(plan.mesh),
+        topology_(topology_of(plan.mesh)),
         whole_(whole),
         wishes_(wishes),
         guides_(guides),
@@ -62,7 +56,7 @@ class ComponentRemesher {
     const FrameField unit = solve_field();
     take(extract_with_count(unit));
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
-    require_valid("improve", result_.mesh);
+    require_valid("improve", result_.mesh, topology_);
     const Doubts doubts = finishing().doubts(result_.mesh, context_.threads);
     for (const int q : doubts.flawed) result_.flawed_places.push_back(middle_of(result_.mesh, q));
     result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
@@ -77,7 +71,7 @@ class ComponentRemesher {
     prepare();
     const FrameField unit = solve_field();
     if (whole_ != nullptr) {
-      Extraction quads = extract_by_any_means(unit, plan_.quads, plan_.quads);
+      Extraction quads = extract_somehow(unit, plan_.quads, plan_.quads);
       finishing().make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
       quads.features = plan_.features;
       take(std::move(quads));
@@ -163,7 +157,7 @@ class ComponentRemesher {
       if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
       const bool is_last = i + 1 == tries || is_stuck;
       const bool with_rows = settings_.kind != PassKind::kAsNeeded && (is_later || is_last || i >= kTriesWithoutRows);
-      Extraction current = extract_by_any_means(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
+      Extraction current = extract_somehow(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
       result_.extracted_quads += current.count();
       result_.work += work_of(current);
       const double before_rows = current.quads_before_rows;
@@ -226,13 +220,6 @@ class ComponentRemesher {
     return std::max(kTolerance, kToleranceInQuads / plan_.quads);
   }
 
-  /// What is written can be held by an indexed mesh, and has the surface's topology there too.
-  void require_valid(const std::string& stage, const QuadMesh& mesh) const {
-    require_sound(stage, violations_of(mesh));
-    if (euler_characteristic(mesh) != mesh_.euler_characteristic())
-      throw InternalError(stage, "the quads, by their vertices, have another topology than the surface");
-  }
-
   void finish(Extraction& extraction) {
     if (options_.improve) improve(extraction);
     finishing().make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
@@ -264,16 +251,9 @@ class ComponentRemesher {
   }
 
   /// \param wanted  number of quads to be met by rows; 0: as many as come out
-  Extraction extract_by_any_means(const FrameField& unit, double asked, double wanted) {
-    for (const Attempt attempt : {Attempt::kFull, Attempt::kWithoutCancellation}) {
-      try {
-        return extract(unit, asked, wanted, attempt);
-      } catch (const InternalError& error) {
-        ++result_.repairs.broken_promises;
-        result_.warnings.push_back(std::string("fell back after a broken promise in ") + error.what());
-      }
-    }
-    return extract(unit, asked, wanted, Attempt::kPatchesOnly);
+  Extraction extract_somehow(const FrameField& unit, double asked, double wanted) {
+    const auto extracted = [&](Attempt attempt) { return extract(unit, asked, wanted, attempt); };
+    return extract_by_any_means(extracted, result_.repairs, result_.warnings);
   }
 
   /// Without regard to what fits together, which is what takes its time.
@@ -321,7 +301,10 @@ class ComponentRemesher {
       o.cancel_dislocations = attempt == Attempt::kFull;
       return build_spanning_parameterization(surface_, frames, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
     });
-    if (attempt == Attempt::kPatchesOnly) std::fill(out.param.is_regular.begin(), out.param.is_regular.end(), 0);
+    if (attempt == Attempt::kPatchesOnly)
+      std::fill(out.param.is_regular.begin(), out.param.is_regular.end(), 0);
+    else
+      require_sound("spanning parameterization", violations_of(out.param, surface_, frames));
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.param, surface_));
     RegularQuads regular = clock_.measure("regular quads", [&] {
       return extract_regular_quads(surface_, frames, out.param, context_.in_stage("regular quads", 0.7, 0.76));
@@ -334,7 +317,7 @@ class ComponentRemesher {
     out.mesh = clock_.measure("assemble", [&] {
       QuadComplex complex = assemble_quads(surface_, regular, singular);
       require_sound("assemble", violations_of(complex));
-      if (euler_characteristic(complex) != mesh_.euler_characteristic())
+      if (topology_of(complex) != topology_)
         throw InternalError("assemble", "the quads have another topology than the surface");
       std::vector<char> counted;
       for (const FeatureCurve& curve : plan_.features.curves) counted.push_back(curve.asked_count > 0);
@@ -353,7 +336,7 @@ class ComponentRemesher {
       order_feature_edges(mesh, mesh_, plan_.features);
       return mesh;
     });
-    require_valid("assemble", out.mesh);
+    require_valid("assemble", out.mesh, topology_);
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.mesh, "assemble"));
     out.patch_count = static_cast<int>(singular.patches.size());
     out.singular_area = singular.singular_area;
@@ -406,6 +389,7 @@ class ComponentRemesher {
 
   const ComponentPlan& plan_;
   const TriangleMesh& mesh_;
+  const Topology topology_;
   const SurfaceIndex* whole_;
   const Wishes& wishes_;
   const HardGuides& guides_;

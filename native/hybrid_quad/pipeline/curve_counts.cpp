@@ -38,7 +38,11 @@ std::vector<int> edges_by_curve(std::size_t curves, const QuadMesh& mesh) {
 }  // namespace
 
 void check_curve_counts(const PolygonSoup& soup, const std::vector<CurveCount>& asked) {
+  constexpr double kMostEdges = 5e6;  // as many as quads may be asked for
   if (asked.empty()) return;
+  double edges = 0;
+  for (const CurveCount& each : asked) edges += each.count;
+  if (edges > kMostEdges) throw InputError("wrong_count", "The curves of curve_counts ask for more than five million edges.", "", {});
   std::map<std::array<int, 2>, int> curve_of;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     check_path(asked[i], i, static_cast<int>(soup.positions.size()));

@@ -100,11 +100,11 @@ void take_away_at(ComponentPlan& plan, const std::vector<Vector3>& places, const
 
 /// Takes features away, by ever wider gaps between those that stay, until there is room. \returns whether any
 template <class HasRoom>
-bool widen_gaps(ComponentPlan& plan, double length, const HasRoom& has_room) {
+bool widen_gaps(ComponentPlan& plan, double length, const RunContext& context, const HasRoom& has_room) {
   const std::vector<char> is_kept = firm_features(plan);
   std::vector<char> remains;
   for (const double gap : kGaps) {
-    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length);
+    remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length, context);
     if (has_room(trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners))) break;
   }
   const int before = plan.given_way;
@@ -122,25 +122,25 @@ double usual_length(const ComponentPlan& plan) { return std::sqrt(plan.mesh.tota
 
 }  // namespace
 
-void merge_double_lines(ComponentPlan& plan, double length) {
+void merge_double_lines(ComponentPlan& plan, double length, const RunContext& context) {
   constexpr double kGap = 0.05;
-  take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length));
+  take_features_away(plan, features_with_room(plan.mesh, plan.features, plan.is_given, kGap * length, context));
   // What is left lies on top of itself, as the rim of a flap does, where the surface is smaller than a strip along it.
   if (total_length(plan) * kGap * length > plan.mesh.total_area()) take_features_away(plan, with_boundary(plan, plan.is_given));
 }
 
-bool make_room(ComponentPlan& plan) {
+bool make_room(ComponentPlan& plan, const RunContext& context) {
   const double length = usual_length(plan);
   const auto crowding_of = [&](const FeatureGraph& features) { return crowding(plan.mesh, features, plan.quads, length); };
   plan.was_crowded = crowding_of(plan.features) > kTooCrowded;
-  return plan.was_crowded && widen_gaps(plan, length, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
+  return plan.was_crowded && widen_gaps(plan, length, context, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
 }
 
-bool make_room_for_shapes(ComponentPlan& plan) {
+bool make_room_for_shapes(ComponentPlan& plan, const RunContext& context) {
   const double length = usual_length(plan);
   const auto shortness_of = [&](const FeatureGraph& features) { return shortness(plan.mesh, features, plan.quads, length); };
   const bool is_cramped = plan.was_crowded || shortness_of(plan.features) > kTooShort;
-  return is_cramped && widen_gaps(plan, length, [&](const FeatureGraph& fewer) {
+  return is_cramped && widen_gaps(plan, length, context, [&](const FeatureGraph& fewer) {
            return shortness_of(fewer) <= kHardlyAnyShort && crowding(plan.mesh, fewer, plan.quads, length) <= kAiry;
          });
 }

@@ -13,15 +13,15 @@ namespace hybrid_quad {
 /// A crease with slivers along it is found as two lines by angle, on top of each other: one of them stays. None does where what is
 /// left lies on top of itself, as the rim of a flap thin as a hair.
 /// \param length  the usual edge length (scene units)
-void merge_double_lines(ComponentPlan& plan, double length);
+void merge_double_lines(ComponentPlan& plan, double length, const RunContext& context);
 
 /// Where features must have nearly as many edges as there are to be quads, takes as few of them away as make room.
 /// \returns whether any
-bool make_room(ComponentPlan& plan);
+bool make_room(ComponentPlan& plan, const RunContext& context);
 
 /// Where more than a few features are shorter than quads, or room had to be made, takes away what keeps these from having good shapes. Whether they do is to
 /// be seen: where features are all that a thin part has, it comes out the worse. \returns whether any
-bool make_room_for_shapes(ComponentPlan& plan);
+bool make_room_for_shapes(ComponentPlan& plan, const RunContext& context);
 
 /// Takes away the features that pass within an edge of some places. \returns whether any
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);

@@ -1,5 +1,7 @@
 #include "hybrid_quad/pipeline/fewest_quads.h"
 
+#include "hybrid_quad/mesh/topology.h"
+
 namespace hybrid_quad {
 
 namespace {
@@ -16,17 +18,6 @@ bool may_exist(int quads, int border, int euler) {
 
 }  // namespace
 
-int boundary_loops(const TriangleMesh& mesh) {
-  std::vector<char> seen(mesh.vertex_count(), 0);
-  int loops = 0;
-  for (int start = 0; start < mesh.vertex_count(); ++start) {
-    if (seen[start] || !mesh.is_boundary_vertex(start)) continue;
-    ++loops;
-    for (int v = start; !seen[v]; v = mesh.to(mesh.outgoing(v))) seen[v] = 1;
-  }
-  return loops;
-}
-
 int fewest_quads(int euler_characteristic, int loops) {
   const int least_border = kLeastEdgesOfLoop * loops;
   for (int quads = 1;; ++quads) {
@@ -38,12 +29,12 @@ int fewest_quads(int euler_characteristic, int loops) {
 }
 
 int fewest_quads(const TriangleMesh& component) {
-  return fewest_quads(component.euler_characteristic(), boundary_loops(component));
+  return fewest_quads(component.euler_characteristic(), border_loops_of(component));
 }
 
 double quads_for_topology(const TriangleMesh& mesh) {
   constexpr double kSphere = 16, kHandle = 32, kHole = 8;
-  const int loops = boundary_loops(mesh);
+  const int loops = border_loops_of(mesh);
   const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
   return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
 }

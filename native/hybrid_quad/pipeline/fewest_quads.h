@@ -4,9 +4,6 @@
 
 namespace hybrid_quad {
 
-/// Closed curves that the boundary consists of, 0 for a closed surface.
-int boundary_loops(const TriangleMesh& mesh);
-
 /// No valid mesh of quads (violations_of) that is connected and of this topology has fewer quads: there would not be enough pairs of
 /// vertices for its edges, or vertices with fewer than three quads.
 /// \param euler_characteristic  V - E + F  \param loops  of the boundary

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "hybrid_quad/improve/improve.h"
+#include "hybrid_quad/pipeline/attempts.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/settle_count.h"
+#include "hybrid_quad/pipeline/validity.h"
 
 namespace hybrid_quad {
 
@@ -40,10 +42,19 @@ void LastMeans::improve_poor(ComponentResult& result) const {
   result.repairs.opened_flat_quads += open_flat_quads(result.mesh, mean_edge_length(result.mesh), &whole_, least_agreement(whole_));
 }
 
-/// \returns what `means` counts
+/// \returns what `means` counts; 0 where it broke the mesh, which then is as it was
 int LastMeans::apply(Means means, const Finishing& finishing, ComponentResult& result) const {
   const RunContext improving = context_.in_stage("improve", 0.97, 0.97);
-  const int count = clock_.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
+  const QuadMesh before = result.mesh;
+  int count = 0;
+  try {
+    count = clock_.measure("improve", [&] { return (finishing.*means)(result.mesh, improving); });
+    if (result.mesh.quads != before.quads) require_valid("improve", result.mesh, topology_of(planned_.mesh));
+  } catch (const InternalError& error) {
+    record_broken_promise(error, result.repairs, result.warnings);
+    result.mesh = before;
+    return 0;
+  }
   if (count == 0) return 0;
   const Doubts doubts = finishing.doubts(result.mesh, context_.threads);
   result.flawed_quads = static_cast<int>(doubts.flawed.size());
@@ -86,12 +97,16 @@ void LastMeans::let_marks_give_way(ComponentResult& result) {
       settle_count(plan, count_, whole_, wishes_, options_, other, clock_, context_);
       if (other.flawed_quads <= kMostToSplit)
         LastMeans(plan, count_, whole_, wishes_, guides_, options_, budget_, clock_, context_).split_flawed(other);
-      if (other.flawed_quads >= result.flawed_quads) continue;
+      if (other.flawed_quads >= result.flawed_quads) {
+        keep_broken_promises(other, result);
+        continue;
+      }
       other.passes = result.passes;
+      keep_broken_promises(result, other);
       result = std::move(other);
       fewer_marks_ = std::move(plan);
-    } catch (const InternalError&) {
-      ++result.repairs.broken_promises;
+    } catch (const InternalError& error) {
+      record_broken_promise(error, result.repairs, result.warnings);
     }
   }
 }

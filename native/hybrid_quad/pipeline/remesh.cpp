@@ -15,6 +15,7 @@
 #include "hybrid_quad/pipeline/remesh_components.h"
 #include "hybrid_quad/pipeline/run_plan.h"
 #include "hybrid_quad/pipeline/symmetric_domain.h"
+#include "hybrid_quad/pipeline/validity.h"
 
 namespace hybrid_quad {
 
@@ -276,10 +277,6 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
   }
   const ShapeQuality shape = clock.measure("quality", [&] { return shape_quality(result.mesh); });
   add_warnings(run, parts, shape, result);
-  if (run.images > 1) {
-    const std::vector<std::string> violations = violations_of(result.mesh);
-    if (!violations.empty()) throw InternalError("symmetry", violations.front());
-  }
   clock.measure("quality", [&] {
     report.guides = measure_guides(run.options.strokes, run.guides.traces, result.mesh, guided, report.warnings);
     for (GuideRecord& guide : report.guides) {
@@ -291,6 +288,7 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
     if (run.options.measure_distances) measure_distances(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });
   move_outward(run.frame, soup, result.mesh);
+  require_sound(run.images > 1 ? "symmetry" : "result", violations_of_result(result.mesh));
   report.stages = clock.records;
   return result;
 }

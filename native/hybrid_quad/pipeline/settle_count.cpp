@@ -7,6 +7,8 @@
 
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/mesh/quad_count.h"
+#include "hybrid_quad/mesh/topology.h"
+#include "hybrid_quad/pipeline/attempts.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/finishing.h"
 
@@ -35,16 +37,13 @@ class CountSettling {
   }
 
   void run() {
-    int rows = 0;
-    for (int i = 0, last = -1; i < kRowRounds && is_far() && rows != last && may_improve(); ++i) {
-      last = rows;
-      rows += change_rows();
+    try {
+      settle();
+    } catch (const InternalError& error) {
+      record_broken_promise(error, result_.repairs, result_.warnings);  // what was taken before is valid
     }
-    bool is_rough = false;
-    for (int i = 0; i < kRounds && is_far() && change_quads(); ++i) is_rough = true;
-    if (is_rough) improve_again();
     if (!any_taken_) return;
-    result_.repairs.fitted_rows += rows;
+    result_.repairs.fitted_rows += rows_;
     result_.flawed_quads = now_.flawed;
     result_.doubtful_quads = now_.doubtful;
     result_.missed_counts = now_.missed;
@@ -58,12 +57,22 @@ class CountSettling {
             missed_counts(plan_.features, mesh), error_of(quads, wanted_)};
   }
 
+  void settle() {
+    for (int i = 0, last = -1; i < kRowRounds && is_far() && rows_ != last && may_improve(); ++i) {
+      last = rows_;
+      rows_ += change_rows();
+    }
+    bool is_rough = false;
+    for (int i = 0; i < kRounds && is_far() && change_quads(); ++i) is_rough = true;
+    if (is_rough) improve_again();
+  }
+
   bool is_far() const { return is_far_off(now_.quads, wanted_); }
   double tolerance() const { return std::max(1.0, kAim * wanted_); }
 
   /// \returns whether `mesh` is sound and no worse; then it is the result
   bool take(QuadMesh mesh, double most_error) {
-    if (!violations_of(mesh).empty() || euler_characteristic(mesh) != plan_.mesh.euler_characteristic()) return false;
+    if (!violations_of(mesh).empty() || topology_of(mesh) != topology_of(plan_.mesh)) return false;
     const SettledState then = measured(mesh);
     if (!may_take_place_of(then, now_, most_error, error_at_first_)) return false;
     now_ = then;
@@ -127,7 +136,7 @@ class CountSettling {
   ComponentResult& result_;
   const RunContext& context_;
   std::vector<char> counted_;
-  int improvements_ = 0;
+  int improvements_ = 0, rows_ = 0;  ///< of quads that were changed
   SettledState now_;
   double error_at_first_;
   bool any_taken_ = false;

@@ -192,7 +192,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.features = detect_features(plan.mesh, crease_normals_of_parts(mesh, fine.face_source), features, context);
   plan.sharp_angle = plan.features.sharp_angle;
   plan.given_way = plan.features.rounds_left_out;
-  if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density);
+  if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density, context);
   if (!plan.guides.empty()) add_guide_corners(plan);
   plan.density = density_on(wishes, plan.mesh, plan.length);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
@@ -215,7 +215,7 @@ void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
 
 bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, PlaneSet mirror_planes, const RunContext& context) {
   bool any = false;
-  for (ComponentPlan& plan : plans) any |= make_room(plan);
+  for (ComponentPlan& plan : plans) any |= make_room(plan, context);
   if (!any) return false;
   for (ComponentPlan& plan : plans) plan_lengths(plan, mirror_planes, context);
   balance_plans(plans, quads_asked);
@@ -233,7 +233,7 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
 }
 
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
-  return with_fewer_features(plan, mirror_planes, context, make_room_for_shapes);
+  return with_fewer_features(plan, mirror_planes, context, [&](ComponentPlan& without) { return make_room_for_shapes(without, context); });
 }
 
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,

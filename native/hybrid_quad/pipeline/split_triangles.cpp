@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid_quad/mesh/topology.h"
+#include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/finishing.h"
 
 namespace hybrid_quad {
@@ -26,7 +28,8 @@ class TriangleSplitter {
       for (int k = 0; k < 3; ++k)
         quads_.quads.push_back({component_.from(h + k), middle_[h + k], centre, middle_[h + (k + 2) % 3]});
     }
-    return violations_of(quads_).empty() ? std::optional(std::move(quads_)) : std::nullopt;
+    const bool is_valid = violations_of(quads_).empty() && topology_of(quads_) == topology_of(component_);
+    return is_valid ? std::optional(std::move(quads_)) : std::nullopt;
   }
 
  private:
@@ -118,6 +121,11 @@ void keep_triangles(const TriangleMesh& component, const ComponentPlan& plan, do
   const int flawed = static_cast<int>(flawed_quads(*quads, whole, least_agreement(whole), threads).size());
   if (flawed >= result.flawed_quads) return;
   result.mesh = *std::move(quads);
+  // All of it is one patch filled without a field.
+  result.patches = {1, 0, 1, 0};
+  result.singular_area = result.combinatorial_area = result.area;
+  result.missed_counts = missed_counts(plan.features, result.mesh);
+  result.warnings.push_back("a part is made of its own triangles, each in three quads: too narrow or too folded for quads of the lengths asked for");
   result.features = plan.features;
   result.curve_planes = plan.curve_planes;
   result.features_given_way = plan.given_way;

@@ -1,9 +1,8 @@
 #include "hybrid_quad/singular_patches/patch_quads.h"
 
 #include <algorithm>
-#include <numeric>
 
-#include "hybrid_quad/mesh/quad_complex.h"
+#include "hybrid_quad/mesh/topology.h"
 
 namespace hybrid_quad {
 
@@ -57,25 +56,6 @@ std::vector<ArcEnds> arcs_of(const PatchQuads& quads, const QuadComplex& c) {
   return ends;
 }
 
-/// Number of connected pieces of a gluing whose faces have `width` sides.
-int piece_count(const std::vector<int>& opposite, int width) {
-  std::vector<int> parent(opposite.size() / width);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  int pieces = static_cast<int>(parent.size());
-  for (int d = 0; d < static_cast<int>(opposite.size()); ++d) {
-    if (opposite[d] < 0) continue;
-    const int a = root(d / width), b = root(opposite[d] / width);
-    if (a == b) continue;
-    parent[a] = b;
-    --pieces;
-  }
-  return pieces;
-}
-
 void check_shapes(const PatchQuads& quads, const QuadComplex& c, std::vector<std::string>& found) {
   std::vector<int> valence(c.positions.size(), 0);
   std::vector<char> border(c.positions.size(), 0);
@@ -126,12 +106,11 @@ std::vector<std::string> structural_violations_of(const PatchQuads& quads, const
     if ((quads.node[v] >= 0) != (on_border[v] != 0))
       found.push_back("vertex " + std::to_string(v) + ": nodes and border disagree");
   if (arcs_of(patch) != arcs_of(quads, c)) found.push_back("the border is not the patch's");
-  const int chi = euler_characteristic(c), wanted = patch.mesh.euler_characteristic();
-  if (chi != wanted)
-    found.push_back("Euler characteristic " + std::to_string(chi) + ", not the patch's " +
-                    std::to_string(wanted));
-  if (piece_count(quads.opposite, 4) != piece_count(patch.mesh.opposites(), 3))
-    found.push_back("not as many pieces as the patch");
+  const Topology topology = topology_of(c), wanted = topology_of(patch.mesh);
+  if (topology.euler_characteristic != wanted.euler_characteristic)
+    found.push_back("Euler characteristic " + std::to_string(topology.euler_characteristic) + ", not the patch's " +
+                    std::to_string(wanted.euler_characteristic));
+  if (topology.pieces != wanted.pieces) found.push_back("not as many pieces as the patch");
   return found;
 }
 

@@ -38,6 +38,8 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
   if (!out.rejected.empty()) {
     out.combinatorial = true;
     out.quads = combinatorial_fill(patch, context);
+    if (const auto violations = structural_violations_of(out.quads, patch); !violations.empty())
+      throw InternalError("combinatorial fill", violations.front());
   }
   return out;
 }

@@ -132,37 +132,37 @@ std::vector<std::string> violations_of(const SpanningParameterization& param, co
     return found;
   }
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    const std::string at = " at half-edge " + std::to_string(h);
+    const auto report = [&](const char* what) { found.push_back(std::string(what) + " at half-edge " + std::to_string(h)); };
     const int o = mesh.opposite(h), f = h / 3;
     if (o >= 0 && param.halfedge_uv[o] != minus(turned(param.halfedge_uv[h], frames.matching[h])))
-      found.push_back("sides disagree" + at);
+      report("sides disagree");
     if (h % 3 < 2 && param.corner_uv[h + 1] != sum(param.corner_uv[h], param.halfedge_uv[h]))
-      found.push_back("corners do not follow the edge" + at);
+      report("corners do not follow the edge");
     const int around = mesh.rotate_ccw(h);
     if (around >= 0 &&
         !is_lattice(difference(turned(param.corner_uv[h], frames.matching[TriangleMesh::previous(h)]),
                                param.corner_uv[around])))
-      found.push_back("corner leaves the lattice" + at);
+      report("corner leaves the lattice");
     if (param.is_grid_vertex[mesh.from(h)] &&
         !(is_integer(param.corner_uv[h][0]) && is_integer(param.corner_uv[h][1])))
-      found.push_back("pinned vertex is off the grid" + at);
+      report("pinned vertex is off the grid");
     if (surface.features.is_feature(h) && param.is_regular[f]) {
       const GridVector& d = param.halfedge_uv[h];
       const int across = d[0] == 0 ? 0 : 1;
       if (d[across] != 0 || !is_integer(param.corner_uv[h][across]))
-        found.push_back("feature is off its isoline" + at);
+        report("feature is off its isoline");
     }
   }
   for (int f = 0; f < mesh.face_count(); ++f) {
     const GridVector gap = closing_gap(param, f);
     const IntVector2 burgers = burgers_of(param.charge[f]);
-    const std::string at = " at face " + std::to_string(f);
+    const auto report = [&](const char* what) { found.push_back(std::string(what) + " at face " + std::to_string(f)); };
     if (gap[0] != burgers[0] * kGridUnit || gap[1] != burgers[1] * kGridUnit)
-      found.push_back("gap is not the charge" + at);
+      report("gap is not the charge");
     if (!param.is_regular[f]) continue;
-    if (!is_zero(gap)) found.push_back("regular face does not close" + at);
+    if (!is_zero(gap)) report("regular face does not close");
     if (determinant(param.halfedge_uv[3 * f], param.halfedge_uv[3 * f + 1]) <= 0)
-      found.push_back("regular face is folded" + at);
+      report("regular face is folded");
   }
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (!param.is_grid_vertex[v] && (surface.features.is_corner[v] || (frames.cone_index[v] & 1)))
