@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
 import shlex
 import sys
 from collections.abc import Iterable, Iterator
@@ -23,7 +22,7 @@ from comparison import Case, Result, from_outcome, from_stored, page
 from hybrid_quad.core.mesh_arrays import surface_area
 from hybrid_quad.core.mesh_io import read_mesh
 from judging import judged
-from results import build_id, read_results
+from results import append_row, build_id, read_results
 from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, measure, run_and_judge
 from stored_peers import PEERS, QUADS, stored_results
 
@@ -86,7 +85,7 @@ class _Ours:
                 return Result("hybrid-quad", "not run", here=True)
             outcome = run_and_judge(run, self._out, Limits(seconds=self._seconds), self._judge)
             self._done[run.name] = outcome
-            _append(self._out / "results.jsonl", {"name": run.name, **outcome.as_json(), "build": build_id()})
+            append_row(self._out / "results.jsonl", {"name": run.name, **outcome.as_json(), "build": build_id()})
             print(f"{run.name}: {outcome.status}, {outcome.seconds:.1f} s", file=sys.stderr, flush=True)
         return from_outcome("hybrid-quad", self._done[run.name])
 
@@ -110,7 +109,7 @@ class _Peers:
             if name not in self._done:
                 outcome = self._run(peer, path, quads, is_cad, self._out / f"{name}.obj")
                 self._done[name] = outcome
-                _append(self._out / "peers.jsonl", {"name": name, **outcome.as_json(), "build": peer.name})
+                append_row(self._out / "peers.jsonl", {"name": name, **outcome.as_json(), "build": peer.name})
                 print(f"{name}: {outcome.status}, {outcome.seconds:.1f} s", file=sys.stderr, flush=True)
             results.append(from_outcome(peer.name, self._done[name]))
         return results
@@ -125,7 +124,7 @@ class _Peers:
         if measured.status == "ok" and target.exists():
             report = target.with_suffix(".judge.json")
             outcome.judgement = judged(self._judge, quads, path, target, report, self._limits.judge_seconds)
-            outcome.failed = outcome.judgement.get("failed", [])
+            outcome.judged, outcome.failed = True, outcome.judgement.get("failed", [])
             outcome.status = "invalid" if outcome.failed else "valid"
         elif measured.status == "ok":
             outcome.status = "no mesh"
@@ -161,11 +160,6 @@ def _chord_percents(path: Path, counts: Iterable[int]) -> dict[int, float]:
     diagonal = float(((vertices.max(axis=0) - vertices.min(axis=0)) ** 2).sum() ** 0.5)
     curves = feature_curves(vertices, faces, SHARP_DEGREES)
     return {quads: 100 * chord_error(curves, (area / quads) ** 0.5) / diagonal for quads in counts}
-
-
-def _append(path: Path, row: dict[str, object]) -> None:
-    with path.open("a") as file:
-        file.write(json.dumps(row) + "\n")
 
 
 def _parser() -> argparse.ArgumentParser:

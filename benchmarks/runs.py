@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 COLLECTION = ROOT.parent / "shared" / "meshes" / "dev"
 BAD = COLLECTION.parent / "bad"
 JUDGE = ROOT.parent / "shared" / "judge" / "judge_quads.py"
+OWN = "own: "  # begins the names of failed checks that are not the judge's
 SETTINGS = {"sharp": ("--sharp-angle", "40"), "no_sharp": ("--no-sharp",)}
 
 
@@ -42,7 +43,7 @@ class Run:
     setting: str
     arguments: tuple[str, ...] = ()  # more of the command line's
     variant: str = "default"  # see variants.py
-    may_refuse: bool = False  # the model is no clean surface: a good reason will do
+    refusal: str | None = None  # what is expected, see refusals.as_expected
 
     @property
     def name(self) -> str:
@@ -69,8 +70,9 @@ class Outcome:
     """What came of a run.
 
     `status` is "valid", "valid but for samples" (the judge's random points of the surface miss what some quads agree with, and
-    the whole surface does not), "refused" (a model that may be, with a reason), "invalid", "timeout" (had to be killed), "crash",
-    or the report's where no mesh was made; `failed` names the checks that failed, of the judge and of our own validation.
+    the whole surface does not), "refused" (with a reason, whether or not it should be), "invalid", "timeout" (had to be killed),
+    "crash", or the report's where no mesh was made; `failed` names the checks that failed, of the judge and of our own validation.
+    What was expected of a model makes "wrongly refused" and "not refused" of some, see `refusals.as_expected`.
     """
 
     model: str
@@ -87,11 +89,18 @@ class Outcome:
     variant: str = "default"
     threads: int = 1
     build: str = ""  # of the library, see results.build_id
+    judged: bool = False  # the independent judge was asked about the mesh
+    limits: dict[str, Any] = field(default_factory=dict)  # see Limits; empty in results older than this
 
     @property
     def is_good(self) -> bool:
         """Valid by the judge's criteria, or refused as it should be."""
         return self.status in ("valid", "valid but for samples", "refused")
+
+    @property
+    def has_mesh(self) -> bool:
+        """Whether there is something to judge."""
+        return self.status in ("valid", "valid but for samples", "invalid", "not refused")
 
     def as_json(self) -> dict[str, Any]:
         """For a line of results."""
@@ -140,15 +149,14 @@ def run_and_judge(
         message=measured.message,
         variant=run.variant,
         threads=threads,
+        limits=asdict(limits),
     )
     outcome.seconds, outcome.cpu_seconds, outcome.peak_mb = measured.seconds, measured.cpu_seconds, measured.peak_mb
     if report.exists():
         outcome.report = json.loads(report.read_text())
     if measured.status != "ok":
         if measured.status == "failed":
-            outcome.status = outcome.report.get("status", "crash")
-            if run.may_refuse and _is_refusal(outcome.report):
-                outcome.status = "refused"
+            outcome.status = "refused" if _is_refusal(outcome.report) else outcome.report.get("status", "crash")
         return outcome
     reference = run.path
     if outcome.report.get("defects"):
@@ -156,7 +164,8 @@ def run_and_judge(
             reference, failed = _repaired(run.path, limits.judge_seconds)
         outcome.failed += failed
     outcome.failed += _own_checks(reference, out)
-    if judge is not None and judge.exists():
+    outcome.judged = judge is not None and judge.exists()
+    if judge is not None and outcome.judged:
         judgement = folder / f"{run.name}.judge.json"
         outcome.judgement = judged(judge, run.quads, reference, out, judgement, limits.judge_seconds)
         outcome.failed += outcome.judgement.get("failed", [])
@@ -266,8 +275,8 @@ def _repaired(source: Path, seconds: float) -> tuple[Path, list[str]]:
     command = [sys.executable, str(Path(__file__).with_name("repaired.py")), str(source), str(target)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
     if not target.exists():
-        return target, ["own: no repaired mesh: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]
-    return target, ["own: the repair changed the area"] if done.returncode else []
+        return target, [OWN + "no repaired mesh: " + (done.stderr.strip().splitlines() or ["no answer"])[-1]]
+    return target, [OWN + "the repair changed the area"] if done.returncode else []
 
 
 @functools.cache
@@ -280,9 +289,9 @@ def _folder_of_repaired() -> Path:
 def _own_checks(source: Path, result: Path) -> list[str]:
     vertices, polygons = read_mesh(result)
     if (polygons.sizes != 4).any():
-        return ["own: not only quads"]
-    failed = [f"own: {sentence}" for sentence in violations(vertices, polygons.vertices.reshape(-1, 4))]
+        return [OWN + "not only quads"]
+    failed = [OWN + sentence for sentence in violations(vertices, polygons.vertices.reshape(-1, 4))]
     # STL files have no connectivity to compare with.
     if not failed and source.suffix == ".obj" and topology(read_mesh(source)[1]) != topology(polygons):
-        failed.append("own: topology differs")
+        failed.append(OWN + "topology differs")
     return failed

@@ -2,23 +2,24 @@
 """Remeshes many models at many counts, with many wishes, judges each result, and writes a table (CSV and Markdown).
 
 Every run has a process of its own, with limits of time and memory. What is done is kept in results.jsonl: a sweep that
-was interrupted goes on where it stopped; results of another build of the library are made again.
+was interrupted goes on where it stopped; what another build of the library did is made again, and what had other limits
+or no judge where one is asked for now. Models of the collections are refused as expected_refusals.csv says, or not at all.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import random
 import sys
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import table
-from results import build_id, pack_results, read_results
+from refusals import EXPECTED, as_expected, expected_refusals
+from results import append_row, build_id, pack_results, read_results
 from runs import BAD, COLLECTION, JUDGE, ROOT, SETTINGS, Limits, Outcome, Run, models_of, run_and_judge
 from variants import VARIANTS, arguments_of
 
@@ -42,8 +43,10 @@ def main() -> int:
     if arguments.pack is not None:
         pack_results(done, arguments.pack)
         return 0
-    missing = [run for run in runs if run.name not in done or done[run.name].status in arguments.again]
-    print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
+    judge: Path | None = None if arguments.no_judge else arguments.judge
+    if judge is not None and not judge.is_file():
+        print(f"no judge at {judge}: name it by --judge, or do without one by --no-judge", file=sys.stderr)
+        return 2
 
     def limits(run: Run) -> Limits:
         seconds = arguments.time_limit or max(1.0, run.quads / 10000) * SECONDS_FOR_10000
@@ -51,7 +54,17 @@ def main() -> int:
             return Limits(seconds=seconds, cpu_seconds=arguments.threads * seconds, memory_mb=arguments.memory_mb)
         return Limits(seconds=CLOCK * seconds, cpu_seconds=seconds, memory_mb=arguments.memory_mb)
 
-    judge = None if arguments.no_judge else arguments.judge
+    def is_done(run: Run) -> bool:
+        outcome = done.get(run.name)
+        if outcome is None or as_expected(outcome, run.refusal).status in arguments.again:
+            return False
+        if judge is not None and outcome.has_mesh and not outcome.judged:
+            return False
+        # What is to be made again may have other limits than the rest, whose limits then say nothing.
+        return bool(arguments.again) or outcome.limits in ({}, asdict(limits(run)))
+
+    missing = [run for run in runs if not is_done(run)]
+    print(f"{len(runs)} runs, {len(missing)} to do, build {build}", flush=True)
     environment = _environment(arguments)
 
     def done_by_process(run: Run) -> tuple[Run, Outcome]:
@@ -59,7 +72,7 @@ def main() -> int:
         outcome = run_and_judge(wished, out, limits(run), judge, arguments.threads, environment=environment)
         return run, replace(outcome, build=build)
 
-    with (out / "results.jsonl").open("a") as results, ThreadPoolExecutor(arguments.jobs) as pool:
+    with ThreadPoolExecutor(arguments.jobs) as pool:
         waiting: set[Future[tuple[Run, Outcome]]] = {pool.submit(done_by_process, run) for run in missing}
         finished = 0
         try:
@@ -69,13 +82,13 @@ def main() -> int:
                     run, outcome = future.result()
                     finished += 1
                     done[run.name] = outcome
-                    results.write(json.dumps({"name": run.name, **outcome.as_json()}) + "\n")
-                    results.flush()
-                    print(f"[{finished}/{len(missing)}] {_line(run, outcome)}", flush=True)
+                    append_row(out / "results.jsonl", {"name": run.name, **outcome.as_json()})
+                    line = _line(run, as_expected(outcome, run.refusal))
+                    print(f"[{finished}/{len(missing)}] {line}", flush=True)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    outcomes = [done[run.name] for run in runs]
+    outcomes = [as_expected(done[run.name], run.refusal) for run in runs]
     (out / "sweep.csv").write_text(table.as_csv(outcomes))
     (out / "sweep.md").write_text(table.as_markdown(outcomes))
     print("\n".join(table.summary(outcomes)))
@@ -141,6 +154,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--preload", nargs="+", default=[], metavar="LIBRARY", help="of a sanitizer, for the runs")
     parser.add_argument("--judge", type=Path, default=JUDGE, help="script of the independent judge")
     parser.add_argument("--no-judge", action="store_true", help="only our own validation")
+    parser.add_argument(
+        "--expected", type=Path, default=EXPECTED, metavar="FILE", help="models to be refused, and for what (CSV)"
+    )
     parser.add_argument("--known", type=Path, metavar="FILE", help="what the same build did elsewhere, from --pack")
     parser.add_argument(
         "--pack", type=Path, metavar="FILE", help="write in short what is done, for --known (.jsonl.xz), and end"
@@ -150,15 +166,17 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _runs(arguments: argparse.Namespace) -> Iterator[Run]:
-    for path, is_clean in _models(arguments):
+    expected = expected_refusals(arguments.expected)
+    for path, is_clean, is_known in _models(arguments):
         if arguments.only and not any(part in path.stem for part in arguments.only):
             continue
         if arguments.clean_only and not is_clean:
             continue
+        refusal = expected.get(path.stem, "") if is_known else None
         for quads in arguments.quads:
             for setting in arguments.settings:
                 for variant in arguments.variants:
-                    yield Run(path.stem, path, quads, setting, variant=variant, may_refuse=not is_clean)
+                    yield Run(path.stem, path, quads, setting, variant=variant, refusal=refusal)
 
 
 def _sample(runs: list[Run], size: int | None, seed: int) -> list[Run]:
@@ -172,13 +190,14 @@ def _with_wishes(run: Run, folder: Path) -> Run:
     return replace(run, arguments=arguments_of(run.variant, run.path, folder))
 
 
-def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool]]:
-    """Files, and whether each is a manifold surface that must not be refused."""
+def _models(arguments: argparse.Namespace) -> Iterator[tuple[Path, bool, bool]]:
+    """Files, whether each is a manifold surface, and whether it is of a collection, of which all refusals are known."""
     if arguments.files:
-        yield from ((path, True) for path in arguments.files)
+        collections = [folder.resolve() for folder in arguments.models]
+        yield from ((path, True, path.resolve().parent in collections) for path in arguments.files)
         return
     for folder in arguments.models:
-        yield from models_of(folder)
+        yield from ((path, is_clean, True) for path, is_clean in models_of(folder))
 
 
 def _environment(arguments: argparse.Namespace) -> dict[str, str] | None:

@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from runs import Outcome
+from refusals import refusal_code
+from runs import OWN, Outcome
 
 
 def _found(outcome: Outcome, *keys: str) -> Any:
@@ -16,6 +17,21 @@ def _found(outcome: Outcome, *keys: str) -> Any:
     for key in keys:
         value = value.get(key) if isinstance(value, dict) else None
     return value
+
+
+def _own_checks(outcome: Outcome) -> Any:
+    if not outcome.has_mesh:
+        return None
+    return "failed" if any(check.startswith(OWN) for check in outcome.failed) else "ok"
+
+
+def _judge(outcome: Outcome) -> str:
+    """What the independent judge alone said; "samples" as in "valid but for samples"."""
+    if not outcome.judged:
+        return "not asked"
+    if outcome.status == "valid but for samples":
+        return "samples"
+    return "ok" if all(check.startswith(OWN) for check in outcome.failed) else "failed"
 
 
 def _distance(outcome: Outcome) -> Any:
@@ -46,6 +62,8 @@ COLUMNS: Sequence[Column] = (
     ("asked", "d", lambda o: o.quads),
     ("quads", "d", lambda o: o.report.get("quads")),
     ("valid", "", lambda o: "yes" if o.status == "valid" else o.status),
+    ("own checks", "", _own_checks),
+    ("judge", "", _judge),
     ("failed checks", "", lambda o: ", ".join(o.failed)),
     ("irregular", "d", lambda o: _found(o, "irregular") if o.judgement else o.report.get("irregular_vertices")),
     ("S(F)", "d", lambda o: o.report.get("field_singularities")),
@@ -88,11 +106,14 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
     valid = sum(outcome.status == "valid" for outcome in outcomes)
     lines = [f"{valid} of {len(outcomes)} runs are valid."]
     others = Counter(outcome.status for outcome in outcomes if outcome.status != "valid")
-    refused = Counter(
-        str(outcome.report.get("code") or "unreadable") for outcome in outcomes if outcome.status == "refused"
-    )
-    lines += [f"- {status}: {count}" for status, count in others.most_common()]
-    lines += [f"  - for {code}: {count}" for code, count in refused.most_common()]
+    for status, count in others.most_common():
+        lines.append(f"- {status}: {count}")
+        if status in ("refused", "wrongly refused"):
+            codes = Counter(refusal_code(outcome) for outcome in outcomes if outcome.status == status)
+            lines += [f"  - for {code}: {count}" for code, count in codes.most_common()]
+    unjudged = sum(outcome.has_mesh and not outcome.judged for outcome in outcomes)
+    if unjudged:
+        lines.append(f"- by our own validation only, the judge was not asked: {unjudged}")
     checks = Counter(check.split(":")[0] for outcome in outcomes for check in outcome.failed)
     lines += [f"- failed check {check}: {count}" for check, count in checks.most_common()]
     counted = [o for o in outcomes if o.quads >= 1000 and o.report.get("quads")]
@@ -107,18 +128,14 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def _by_number(outcomes: Sequence[Outcome]) -> list[str]:
-    names = ("asked", "variant", "runs", "valid", "valid but for samples", "refused", "other", "CPU s, mean", "longest")
+    told = ("valid", "valid but for samples", "refused", "wrongly refused", "not refused")
+    names = ("asked", "variant", "runs", *told, "other", "CPU s, mean", "longest")
     lines = ["| " + " | ".join(names) + " |", "|--:|---|" + "--:|" * (len(names) - 2)]
     for quads, variant in sorted({(o.quads, o.variant) for o in outcomes}):
         of_kind = [o for o in outcomes if (o.quads, o.variant) == (quads, variant)]
-        states = Counter(o.status if o.is_good else "other" for o in of_kind)
+        states = Counter(o.status if o.status in told else "other" for o in of_kind)
         seconds = [o.cpu_seconds for o in of_kind]
-        row = [
-            quads,
-            variant,
-            len(of_kind),
-            *(states[name] for name in ("valid", "valid but for samples", "refused", "other")),
-        ]
+        row = [quads, variant, len(of_kind), *(states[name] for name in (*told, "other"))]
         lines.append(f"| {' | '.join(map(str, row))} | {sum(seconds) / len(seconds):.1f} | {max(seconds):.0f} |")
     return lines
 

@@ -38,7 +38,7 @@ def arguments_of(variant: str, source: Path, folder: Path) -> tuple[str, ...]:
     if variant == "sizes":
         np.savetxt(path, random_density(vertices, random), fmt="%.9g")
         return ("--density", str(path))
-    edges = random_walks(polygons, random)
+    edges = random_walks(polygons, len(vertices), random)
     if not len(edges):
         return ()
     np.savetxt(path, edges, fmt="%d")
@@ -66,15 +66,16 @@ def random_density(vertices: FloatArray, random: np.random.Generator) -> FloatAr
     return density
 
 
-def random_walks(polygons: Polygons, random: np.random.Generator) -> IntArray:
-    """(k, 2) edges of chains that go along edges as they come."""
+def random_walks(polygons: Polygons, count: int, random: np.random.Generator) -> IntArray:
+    """(k, 2) edges of chains that go along edges as they come, between vertices that there are: a mesh with others is to be
+    refused for them, not for a wish."""
     last = np.cumsum(polygons.sizes) - 1
     corners = polygons.vertices
     following = np.append(corners[1:], 0)
     following[last] = corners[last - polygons.sizes + 1]
     ways: dict[int, list[int]] = {}
     for a, b in zip(corners.tolist(), following.tolist(), strict=True):
-        if a != b:
+        if a != b and min(a, b) >= 0 and max(a, b) < count:
             ways.setdefault(a, []).append(b)
             ways.setdefault(b, []).append(a)
     edges = []
