@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from hybrid_quad.cli.main import main
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
-from support.children import heed_interrupts
+from support.children import from_a_shell, heed_interrupts
 from support.mirroring import assert_mirrored
 
 
@@ -220,14 +222,30 @@ def test_a_result_that_is_not_valid_is_never_written(tmp_path, torus, capfd, mon
     assert "report it" in message
 
 
-def test_the_time_limit(tmp_path, capfd):
+def on_one_thread(*words):
+    """A command, on one thread, whose processor time is then no more than the clock shows, however busy the machine is."""
+    return [sys.executable, "-m", "hybrid_quad", *words, "--quiet", "--threads", "1"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the processor time of children")
+def test_the_time_limit(tmp_path):
+    import resource
+
+    def seconds():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
     mesh = write_obj(tmp_path / "big.obj", *surfaces.torus(400, 160))
-    unchanged(
-        tmp_path,
-        ["remesh", mesh, str(tmp_path / "out.obj"), "--quads", "20000", "--time-limit", "0.5"],
-        exit_codes.CANCELLED,
-    )
-    assert "time limit" in capfd.readouterr().err
+    out = tmp_path / "out.obj"
+    out.write_text("old result")
+    before, begin = contents(tmp_path), seconds()
+    # Without the limit it takes many times that.
+    asked = on_one_thread("remesh", mesh, str(out), "--quads", "200000", "--time-limit", "1")
+    child = subprocess.run(asked, capture_output=True, text=True, check=False)
+    assert child.returncode == exit_codes.CANCELLED, child.stderr
+    assert "time limit" in child.stderr
+    assert seconds() - begin < 1 + 2
+    assert contents(tmp_path) == before
 
 
 def test_the_memory_limit(tmp_path, torus, capfd):
@@ -239,6 +257,28 @@ def test_the_memory_limit(tmp_path, torus, capfd):
     assert json.loads(report.read_text())["status"] == "memory_limit"
     assert main([*arguments, "1000000"]) == exit_codes.OK
     unchanged(tmp_path, [*arguments, "0"], exit_codes.WRONG_USAGE)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems tell less of a process's memory")
+def test_a_memory_limit_that_is_reached_in_the_middle_of_a_run(tmp_path):
+    """A whole run says what it took in its first stage and at its end; the limit lies halfway."""
+    report, out = tmp_path / "report.json", tmp_path / "out.obj"
+    mesh = write_obj(tmp_path / "in.obj", *surfaces.torus(100, 40))
+    asked = from_a_shell(on_one_thread("remesh", mesh, str(out), "--quads", "12000", "--report", str(report)))
+    subprocess.run(asked, check=True)
+    stages = json.loads(report.read_text())["stages"]
+    assert stages[0]["name"] == "mesh"
+    limit = (stages[0]["peak_mb"] + stages[-1]["peak_mb"]) / 2
+    out.write_text("old result")
+    report.unlink()
+    before = contents(tmp_path)
+    child = subprocess.run([*asked, "--memory-limit", f"{limit:.1f}"], capture_output=True, text=True, check=False)
+    assert child.returncode == exit_codes.CANCELLED, child.stderr
+    told = re.search(r"cancelled during (.+) \(the memory limit is reached\); nothing was written", child.stderr)
+    assert told and told[1] in {stage["name"] for stage in stages[1:]}
+    assert json.loads(report.read_text())["status"] == "memory_limit"
+    report.unlink()
+    assert contents(tmp_path) == before
 
 
 def test_a_machine_without_memory(tmp_path, torus, capfd, monkeypatch):
@@ -319,12 +359,31 @@ def test_a_device_is_not_replaced(tmp_path, torus, capfd):
     assert "no regular file" in capfd.readouterr().err
 
 
-@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="nothing is denied to root")
-def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(tmp_path, torus, capfd):
-    folder = tmp_path / "locked"
-    folder.mkdir(mode=0o500)
-    assert main(["remesh", torus, str(folder / "out.obj")]) == exit_codes.WRONG_USAGE
-    assert "cannot be written to" in capfd.readouterr().err
+@pytest.fixture
+def nobody():
+    """What makes ``subprocess.run`` start a Python program as a user to whom something can be denied, as to root it cannot."""
+    if os.geteuid():
+        return {}
+    user = {"user": 65534, "group": 65534, "extra_groups": [], "cwd": "/"}
+    try:
+        able = subprocess.run([sys.executable, "-c", "import hybrid_quad"], **user, capture_output=True, check=False)
+    except OSError:  # may not change the user, or the program lies where only root can go
+        able = None
+    if able is None or able.returncode:
+        pytest.skip("only root can run the package here")
+    return user
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions of POSIX")
+def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(nobody):
+    """Before the input, which is not there, is looked at."""
+    with tempfile.TemporaryDirectory() as folder:  # pytest's own may be shut to other users
+        Path(folder).chmod(0o555)
+        asked = on_one_thread("remesh", f"{folder}/none.obj", f"{folder}/out.obj")
+        child = subprocess.run(asked, **nobody, capture_output=True, text=True, check=False)
+        assert child.returncode == exit_codes.WRONG_USAGE, child.stderr
+        assert "cannot be written to" in child.stderr
+        assert not any(Path(folder).iterdir())
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")

@@ -166,7 +166,7 @@ def test_a_model_turns_with_its_result(sharp_angle):
     turn = rotation(4)
     result = hybrid_quad.remesh(vertices @ turn.T, faces, quads=1000, sharp_angle=sharp_angle)
     assert np.array_equal(result.quads, usual.quads)
-    assert np.abs(result.vertices @ turn - usual.vertices).max() < 1e-3 * np.ptp(vertices)
+    assert np.abs(result.vertices @ turn - usual.vertices).max() < 1e-7 * np.ptp(vertices)
     followed = usual.report["repairs"]["followed_creases"]
     assert followed > 0 if sharp_angle else followed == 0
 

@@ -17,12 +17,13 @@ HERE = Path(__file__).resolve().parents[1] / "data" / "meshes"
 COLLECTION = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 
 
-def manifold_models():
+def models_of_the_collection(only_manifold=False):
     index = COLLECTION / "dev" / "index.csv"
     if not index.exists():
         return []
     with index.open() as file:
-        return [row["name"] for row in csv.DictReader(file) if row["edge_mf"] == row["vert_mf"] == "y"]
+        rows = list(csv.DictReader(file))
+    return [row["name"] for row in rows if not only_manifold or row["edge_mf"] == row["vert_mf"] == "y"]
 
 
 @pytest.mark.parametrize("sharp_angle", [40.0, None], ids=["sharp", "no_sharp"])
@@ -62,13 +63,29 @@ def test_too_few_quads_for_the_detail_are_told():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not manifold_models(), reason="no collection of meshes beside the repository")
+@pytest.mark.skipif(not models_of_the_collection(), reason="no collection of meshes beside the repository")
 @pytest.mark.parametrize("sharp_angle", [40.0, None], ids=["sharp", "no_sharp"])
-@pytest.mark.parametrize("name", manifold_models())
+@pytest.mark.parametrize("name", models_of_the_collection(only_manifold=True))
 def test_manifold_models_of_the_collection(name, sharp_angle):
     vertices, faces = read_mesh(COLLECTION / "dev" / f"{name}.obj")
     result = hybrid_quad.remesh(vertices, faces, quads=2000, sharp_angle=sharp_angle)
     assert violations(result.vertices, result.quads) == []
+
+
+@pytest.mark.parametrize("name", ["hexme_i01o_m1_t", "hexme_n11o_limit_cycle_g", "c3d_fandisk", "c3d_suzanne"])
+def test_patches_of_models_of_the_repository_are_filled_by_their_morse_functions(name):
+    """None in the other way, which needs nothing of a function and is for those whose quads fail the checks."""
+    patches = hybrid_quad.remesh(*read_mesh(HERE / f"{name}.obj")).report["patches"]
+    assert patches["morse_smale"] > 0
+    assert (patches["combinatorial"], patches["combinatorial_area_fraction"]) == (0, 0)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not models_of_the_collection(), reason="no collection of meshes beside the repository")
+@pytest.mark.parametrize("name", models_of_the_collection())
+def test_patches_of_the_collection_are_filled_by_their_morse_functions(name):
+    patches = hybrid_quad.remesh(*read_mesh(COLLECTION / "dev" / f"{name}.obj")).report["patches"]
+    assert patches["combinatorial_area_fraction"] < 0.01
 
 
 @pytest.mark.slow

@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 
 import hybrid_quad
+from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.stage_names import StageWatch
+from hybrid_quad.core.surface_points import fan_triangles
 from support import surfaces
 from support.children import heed_interrupts
 
@@ -34,51 +37,121 @@ def test_progress_does_not_flood_the_caller():
     assert len(times) <= 20 * (times[-1] - times[0]) + 3
 
 
-@pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7])
-def test_a_request_to_stop_is_answered_within_a_second(share):
-    """Asks at a share of the progress: no moment on a clock lies within the run on every machine."""
-    reached = [0.0]
-    asked = []
+def silences(mesh, **options):
+    """A run on one thread, and how long it did not ask whether to stop: seconds of its own, each with the stage told last.
+
+    Processor time, so that a busy machine makes nothing longer; what comes before the first question and after the last
+    counts too. A stage is told at most every 50 ms, so that short ones are only in the report.
+    """
+    watch = StageWatch()
+    stages, times = [watch.stage], [time.process_time()]
 
     def cancel():
-        if reached[-1] < share:
-            return False
-        asked.append(time.monotonic())
-        return True
+        stages.append(watch.stage)
+        times.append(time.process_time())
+
+    result = hybrid_quad.remesh(*mesh, threads=1, progress=watch, cancel=cancel, **options)
+    return result, list(zip(np.diff([*times, time.process_time()]), stages, strict=True))
+
+
+def answer(mesh, moment, **options):
+    """Whether a run on one thread heeds a wish to stop that arises `moment` seconds of its own time after its begin, and
+    how much later it ends, which is negative where it had ended before."""
+    asked = time.process_time() + moment
+    try:
+        hybrid_quad.remesh(*mesh, threads=1, cancel=lambda: time.process_time() >= asked, **options)
+    except hybrid_quad.Cancelled:
+        return True, time.process_time() - asked
+    return False, time.process_time() - asked
+
+
+def triangles_of(path):
+    vertices, polygons = read_mesh(path)
+    return vertices, fan_triangles(polygons)
+
+
+def roughened(vertices, faces, share):
+    """With every vertex off its place by a share of the size, and with faces that are turned over or there twice."""
+    random = np.random.default_rng(1)
+    rough = vertices + share * np.ptp(vertices) * random.standard_normal(vertices.shape)
+    dirty = np.concatenate([faces, faces[random.choice(len(faces), 20, replace=False)]])
+    turned = random.choice(len(faces), 40, replace=False)
+    dirty[turned] = dirty[turned, ::-1]
+    return rough, dirty
+
+
+@pytest.fixture
+def cad_part(models):
+    return triangles_of(models / "c3d_fandisk.obj")
+
+
+@pytest.fixture
+def dirty_model(models):
+    return roughened(*triangles_of(models / "c3d_spot_triangulated.obj"), 0.003)
+
+
+USUAL_STAGES = {
+    *("mesh", "features and sizes", "working surface", "frame field", "sizing", "periodic field"),
+    *("spanning parameterization", "regular quads", "singular patches", "assemble", "improve", "quality"),
+}
+
+
+def assert_never_silent(result, silent, stages):
+    assert {stage["name"] for stage in result.report["stages"]} == stages
+    seconds, stage = max(silent)
+    assert seconds < 1.0, f"silent for {seconds:.2f} s of processor time in or after {stage!r}"
+
+
+def test_no_stage_of_a_part_with_features_is_silent_for_a_second(cad_part):
+    guide = hybrid_quad.Stroke(np.linspace((0.9, 14.9, 0.0), (2.1, 15.2, 0.0), 8), kind="loop")  # on its flat side
+    result, silent = silences(cad_part, quads=8000, symmetry="auto", fit_limit_surface=True, strokes=[guide])
+    assert_never_silent(result, silent, USUAL_STAGES | {"symmetry", "hard guides", "limit surface"})
+
+
+def test_no_stage_of_a_dirty_model_that_is_mended_is_silent_for_a_second(dirty_model):
+    result, silent = silences(dirty_model, quads=4000)
+    assert {defect["code"] for defect in result.report["defects"]} == {"duplicate_face", "flipped_face"}
+    assert result.report["repairs"]["mended_places"] > 0
+    assert_never_silent(result, silent, USUAL_STAGES | {"count"})
+
+
+def test_no_stage_of_many_triangles_is_silent_for_a_second():
+    assert_never_silent(*silences(BIG, quads=20000), USUAL_STAGES | {"count"})
+
+
+def test_twenty_requests_at_random_moments_are_answered_within_a_second(dirty_model):
+    """Of the whole run. No two runs take quite the same time: where one ends before it is asked, another moment is drawn."""
+    _, silent = silences(dirty_model, quads=3000)
+    random, waits = np.random.default_rng(7), []
+    while len(waits) < 20:
+        is_heeded, wait = answer(dirty_model, random.uniform(0, sum(seconds for seconds, _ in silent)), quads=3000)
+        assert is_heeded or wait < 0.25, "nobody was asked between the wish to stop and the end"
+        waits += [wait] if is_heeded else []
+    assert max(waits) < 1.0
+
+
+@pytest.mark.xfail(reason="features_with_room() asks nobody while it compares thousands of rough lines with each other")
+def test_a_request_to_stop_while_lines_of_a_rough_part_give_way_is_answered_within_a_second(cad_part):
+    is_heeded, wait = answer(roughened(*cad_part, 0.004), 0.3, quads=40000)
+    assert is_heeded and wait < 1.0
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7])
+def test_a_request_to_stop_is_answered_by_several_threads(share):
+    """Asks at a share of the progress. The wish may have arisen as soon as the question before was answered with no."""
+    reached, asked = [0.0], [time.process_time()]
+
+    def cancel():
+        if reached[-1] >= share:
+            return True
+        asked.append(time.process_time())
 
     with pytest.raises(hybrid_quad.Cancelled) as caught:
-        hybrid_quad.remesh(*BIG, quads=20000, cancel=cancel, progress=lambda _, fraction: reached.append(fraction))
+        hybrid_quad.remesh(
+            *BIG, quads=20000, threads=2, cancel=cancel, progress=lambda _, fraction: reached.append(fraction)
+        )
     assert caught.value.code == "cancelled"
-    assert time.monotonic() - asked[0] < 1.0
-
-
-def test_a_request_to_stop_at_any_poll_is_answered_at_once():
-    """Stops at twenty random polls of a run; the seconds between two polls are how long an answer may take."""
-    mesh = surfaces.together(surfaces.torus(60, 30), surfaces.box(10), surfaces.wavy_grid(20))
-    polls = []
-    hybrid_quad.remesh(*mesh, quads=1500, cancel=lambda: polls.append(time.monotonic()))
-    assert np.diff(polls).max() < 1.0
-    for stop in np.random.default_rng(3).integers(0, len(polls) // 2, 20):
-        count = iter(range(10**6))
-        with pytest.raises(hybrid_quad.Cancelled):
-            hybrid_quad.remesh(*mesh, quads=1500, cancel=lambda count=count, stop=stop: next(count) >= stop)
-
-
-@pytest.mark.slow
-def test_twenty_requests_at_random_moments_of_a_long_run_are_answered_within_a_second():
-    mesh = surfaces.torus(270, 130)  # 70,200 triangles
-    begin = time.monotonic()
-    hybrid_quad.remesh(*mesh, quads=8000)
-    whole = time.monotonic() - begin
-    waits = []
-    for moment in np.random.default_rng(7).uniform(0, 0.95 * whole, 20):
-        begin = time.monotonic()
-        try:
-            hybrid_quad.remesh(*mesh, quads=8000, cancel=lambda end=begin + moment: time.monotonic() > end)
-        except hybrid_quad.Cancelled:
-            waits.append(time.monotonic() - begin - moment)  # from the moment that the wish to stop arose
-    assert len(waits) >= 15  # the others ended before
-    assert max(waits) < 1.0
+    assert time.process_time() - asked[-1] < 2.0  # a second of each
 
 
 def test_the_memory_limit_holds():
@@ -89,11 +162,11 @@ def test_the_memory_limit_holds():
 
 
 def test_the_time_limit_holds():
-    begin = time.monotonic()
+    begin = time.process_time()  # on one thread, no more than the clock shows, however busy the machine is
     with pytest.raises(hybrid_quad.Cancelled) as caught:
-        hybrid_quad.remesh(*BIG, quads=20000, time_limit=0.2)
+        hybrid_quad.remesh(*BIG, quads=100_000, threads=1, time_limit=0.2)
     assert caught.value.code == "time_limit"
-    assert time.monotonic() - begin < 1.2
+    assert time.process_time() - begin < 1.2
 
 
 class Surprise(Exception):

@@ -1,6 +1,9 @@
 """Whole runs on surfaces of every topology."""
 
 import json
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +14,7 @@ from fuzz.cases import load_case
 from hybrid_quad.core import report
 from hybrid_quad.core.validation import scaled_jacobian
 from support import surfaces
+from support.children import from_a_shell
 from support.results import assert_sound, distance_to_edges
 
 FLAP = Path(__file__).resolve().parents[1] / "data" / "regressions" / "rim_of_a_flap"
@@ -138,14 +142,40 @@ def test_the_report_has_every_field_and_fits_json():
     assert made["status"] == "ok"
     assert set(made["scaled_jacobian"]) == {"mean", "p1", "min"}
     assert -1 <= made["scaled_jacobian"]["min"] <= made["scaled_jacobian"]["p1"] <= 1
-    assert made["patches"]["count"] == made["patches"]["morse_smale"] + made["patches"]["combinatorial"]
+    assert set(made["patches"]) == {"count", "morse_smale", "combinatorial", "combinatorial_area_fraction"}
     assert made["stages"]
-    for stage in made["stages"]:
-        assert stage["name"]
-        assert stage["seconds"] >= 0
-        assert stage["peak_mb"] > 0
+    assert all(set(stage) == {"name", "seconds", "peak_mb"} for stage in made["stages"])
     assert made["seed"] == made["options"]["seed"] == 5
     assert made["version"] == hybrid_quad.__version__
+
+
+def test_the_stages_take_the_time_of_the_run():
+    """On one thread no two of them run side by side, and next to nothing is done outside of them; on a busy machine the
+    processor's time is less than the clock's."""
+    begin, begin_used = time.perf_counter(), time.process_time()
+    result = hybrid_quad.remesh(*surfaces.torus(150, 60), quads=4000, threads=1)
+    whole, used = time.perf_counter() - begin, time.process_time() - begin_used
+    seconds = [stage["seconds"] for stage in result.report["stages"]]
+    assert min(seconds) >= 0
+    assert 0.7 * used < sum(seconds) <= whole
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux tells the peak there")
+def test_the_reported_peak_is_that_of_the_process():
+    """Against what the kernel says of the program alone: to the number that the report has, it adds what the program took
+    that started it, wherefore a shell stands between."""
+    code = (
+        f"import json, re, sys; sys.path.insert(0, {str(surfaces.__file__).rsplit('/support/', 1)[0]!r})\n"
+        "from support import surfaces\n"
+        "import hybrid_quad\n"
+        "stages = hybrid_quad.remesh(*surfaces.torus(100, 40), quads=20000, threads=1).report['stages']\n"
+        "peak = int(re.search(r'VmHWM:\\s*(\\d+) kB', open('/proc/self/status').read())[1]) / 1024\n"
+        "print(json.dumps([stages[0]['peak_mb'], stages[-1]['peak_mb'], peak]))\n"
+    )
+    child = subprocess.run(from_a_shell([sys.executable, "-c", code]), check=True, stdout=subprocess.PIPE, timeout=120)
+    first, last, peak = json.loads(child.stdout)
+    assert first < 0.8 * last
+    assert last == pytest.approx(peak, rel=0.1)
 
 
 def test_the_reported_quality_is_that_of_the_mesh():
