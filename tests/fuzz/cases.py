@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from fuzz.frames import random_frames
+from fuzz.parallel_chains import with_parallel_chains
 from hybrid_quad.core.mesh_io import read_mesh
 from support import surfaces
 
@@ -49,7 +51,16 @@ def make_case(seed: int) -> Case:
         if random.random() < 0.2:
             mesh = damage(mesh, random)
     vertices, faces = mesh
+    # What came later draws from numbers of its own: most cases stay what their seeds made before.
+    later = np.random.default_rng([seed, 1])
+    features: list[list[int]] = []
+    if later.random() < 0.15:
+        vertices, faces, features = with_parallel_chains(vertices, faces, later)
     options = _options(vertices, faces, random)
+    if features:
+        options["sharp_edges"] = options.get("sharp_edges", []) + features
+    if later.random() < 0.25:
+        options["threads"] = 2
     if random.random() < 0.2:
         vertices = vertices * 10.0 ** random.integers(-12, 7) + random.choice([0.0, 0.0, 1e3]) * random.normal(size=3)
     return Case(np.asarray(vertices, float), faces, options)
@@ -261,7 +272,7 @@ def _options(vertices: np.ndarray, faces: Faces, random: np.random.Generator) ->
 
     maybe("sharp_edges", lambda: _random_walks(faces, random))
     maybe("density", lambda: (10.0 ** random.uniform(-1, 1, len(vertices))).tolist())
-    maybe("frames", lambda: _frames(len(vertices), random))
+    maybe("frames", lambda: random_frames(vertices, faces, random).tolist())
     maybe("guides", lambda: random.normal(size=(len(vertices), 3)).tolist())
     maybe("curve_counts", lambda: _counted_edges(faces, random))
     maybe("strokes", lambda: _strokes(vertices, random))
@@ -292,12 +303,6 @@ def _random_walks(faces: Faces, random: np.random.Generator) -> list[list[int]]:
             edges.add((min(vertex, step), max(vertex, step)))
             vertex = step
     return [list(edge) for edge in sorted(edges)]
-
-
-def _frames(count: int, random: np.random.Generator) -> list[Any]:
-    frames = random.normal(size=(count, 2, 3))
-    frames[random.random(count) < 0.3] = 0
-    return frames.tolist()
 
 
 def _counted_edges(faces: Faces, random: np.random.Generator) -> list[Any]:

@@ -3,10 +3,12 @@
 
     fuzz_pipeline.py [--seconds S] [--first SEED] [--out DIR]      goes on where it stopped
     fuzz_pipeline.py --replay FOLDER                               one case again
+    fuzz_pipeline.py --shrink FOLDER [--seconds S]                 one case smaller, in its place
 
-A case ends as it should with valid quads, or with a refusal that has a code, a sentence and elements. Each runs in a worker
-process, which is started anew after a crash or when it takes too long. What fails is made as small as it still fails and
-saved under DIR/failures; move it to tests/data/regressions, where tests find it, once it is mended.
+A case ends as it should with valid quads, or with a refusal that has a code, a sentence and elements. Each runs in a
+worker process, which is started anew after a crash or when it takes too long. What fails is made as small as it still
+fails and saved under DIR/failures; once it is mended, move it to tests/data/regressions, where tests find it, with an
+expected.json that says how it ends: outcome and code.
 """
 
 from __future__ import annotations
@@ -62,8 +64,8 @@ class Worker:
         self.end()
         seconds = round(time.monotonic() - begin, 3)
         if not ready:
-            return {"outcome": "timeout", "detail": "had to be killed", "seconds": seconds}
-        return {"outcome": "crash", "detail": f"exit status {process.returncode}", "seconds": seconds}
+            return {"outcome": "timeout", "code": None, "detail": "had to be killed", "seconds": seconds}
+        return {"outcome": "crash", "code": None, "detail": f"exit status {process.returncode}", "seconds": seconds}
 
     def end(self) -> None:
         """Ends the process."""
@@ -91,6 +93,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="number of the first case")
     parser.add_argument("--out", type=Path, default=HERE.parents[1] / "out" / "fuzz")
     parser.add_argument("--replay", type=Path, metavar="FOLDER", help="judge the case in a folder, or of a number")
+    parser.add_argument("--shrink", type=Path, metavar="FOLDER", help="make the case in a folder smaller")
     parser.add_argument("--no-shrink", action="store_true", help="save failures as they are")
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -103,6 +106,8 @@ def main() -> int:
         verdict = verdict_of(case, TIME_LIMIT)
         print(json.dumps(verdict, indent=2))
         return int(verdict["outcome"] in BAD)
+    if arguments.shrink:
+        return shrink_stored(arguments.shrink, arguments.seconds)
     return fuzz(arguments.out, arguments.first, arguments.seconds, not arguments.no_shrink)
 
 
@@ -124,25 +129,36 @@ def fuzz(out: Path, first: int, seconds: float, shrink: bool) -> int:
             if verdict["outcome"] in BAD:
                 folder = out / "failures" / f"{verdict['outcome']}_{seed}"
                 print(f"{seed}: {verdict['outcome']} {verdict['detail']}", flush=True)
-                save(make_case(seed), verdict["outcome"], folder, worker, shrink)
+                make_case(seed).save(folder)
+                if shrink and verdict["outcome"] != "timeout":
+                    shrink_in_place(folder, verdict, worker, seconds=120)
             seed += 1
     worker.end()
     print(f"{outcomes.total()} cases in {time.monotonic() - begin:.0f} s: {dict(outcomes.most_common())}")
     return int(any(outcomes[name] for name in BAD))
 
 
-def save(case: Case, outcome: str, folder: Path, worker: Worker, shrink: bool) -> None:
-    """Keeps a failing case, smaller where it fails alike."""
-    case.save(folder)
-    if not shrink or outcome == "timeout":
-        return
+def shrink_stored(folder: Path, seconds: float) -> int:
+    """Makes a stored case smaller; exit status 1 if it is valid: then there is nothing to keep."""
+    worker = Worker()
+    verdict = worker.judge({"folder": str(folder)})
+    if verdict["outcome"] != "valid":
+        shrink_in_place(folder, verdict, worker, seconds)
+    worker.end()
+    print(f"{verdict['outcome']} {verdict['code'] or ''}: {len(load_case(folder).faces)} faces")
+    return int(verdict["outcome"] == "valid")
+
+
+def shrink_in_place(folder: Path, verdict: dict[str, Any], worker: Worker, seconds: float) -> None:
+    """Keeps the smallest case found that ends as the one in the folder, a refusal with the same code."""
     trial = folder / "trial"
 
-    def fails(smaller: Case) -> bool:
+    def ends_alike(smaller: Case) -> bool:
         smaller.save(trial)
-        return worker.judge({"folder": str(trial)})["outcome"] == outcome
+        judged = worker.judge({"folder": str(trial)})
+        return (judged["outcome"], judged["code"]) == (verdict["outcome"], verdict["code"])
 
-    shrunk(case, fails, seconds=120).save(folder)
+    shrunk(load_case(folder), ends_alike, seconds).save(folder)
     for path in trial.glob("*"):
         path.unlink()
     if trial.exists():

@@ -33,14 +33,14 @@ def verdict_of(case: Case, time_limit: float) -> dict[str, Any]:
     -------
     dict
         ``outcome``: "valid"; "flawed": valid, but for quads that point against the surface, as the report says;
-        "refused", with a code; or one of `BAD`. ``detail``: a sentence. ``seconds``.
+        "refused"; or one of `BAD`. ``code``: of a refusal, else None. ``detail``: a sentence. ``seconds``.
     """
     begin = time.process_time()
-    outcome, detail = _outcome(case, time_limit)
-    return {"outcome": outcome, "detail": detail, "seconds": round(time.process_time() - begin, 3)}
+    outcome, code, detail = _outcome(case, time_limit)
+    return {"outcome": outcome, "code": code, "detail": detail, "seconds": round(time.process_time() - begin, 3)}
 
 
-def _outcome(case: Case, time_limit: float) -> tuple[str, str]:
+def _outcome(case: Case, time_limit: float) -> tuple[str, str | None, str]:
     repaired = []
 
     def look(snapshot: Snapshot) -> None:
@@ -54,27 +54,28 @@ def _outcome(case: Case, time_limit: float) -> tuple[str, str]:
 
     try:
         result = hybrid_quad.remesh(
-            case.vertices, case.faces, **arguments_of(case), cancel=is_late, on_snapshot=look, threads=1
+            case.vertices, case.faces, **{"threads": 1, **arguments_of(case)}, cancel=is_late, on_snapshot=look
         )
     except hybrid_quad.InputError as error:
         good = error.code and str(error).endswith(".") and (error.code in NO_ELEMENTS or len(error.elements))
-        return ("refused" if good else "bad_refusal"), f"{error.code}: {error}"[:300]
+        return ("refused" if good else "bad_refusal"), error.code, f"{error.code}: {error}"[:300]
     except hybrid_quad.Cancelled as error:
-        return "timeout", str(error)
+        return "timeout", None, str(error)
     except hybrid_quad.InternalError as error:
-        return "internal_error", str(error)
+        return "internal_error", None, str(error)
     except Exception:
-        return "exception", traceback.format_exc()[-600:]
+        return "exception", None, traceback.format_exc()[-600:]
     found = violations(result.vertices, result.quads)
     if not len(result.quads):
         found.append("no quads")
     if not case.options.get("symmetry"):
         found += _differences(repaired[0], result.quads)
     if found:
-        return "invalid", "; ".join(found)[:600]
+        return "invalid", None, "; ".join(found)[:600]
     if result.report["flawed_quads"] > 0:
-        return "flawed", next(warning for warning in result.report["warnings"] if "against the surface" in warning)
-    return "valid", ""
+        warnings = [warning for warning in result.report["warnings"] if "against the surface" in warning]
+        return "flawed", None, warnings[0]
+    return "valid", None, ""
 
 
 def _differences(mesh: Snapshot, quads: np.ndarray) -> list[str]:

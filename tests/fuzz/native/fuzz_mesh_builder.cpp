@@ -1,10 +1,9 @@
 // libFuzzer: any polygons in, an oriented manifold or an InputError out, and check_mesh() of the same opinion.
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
+#include "fail.h"
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/mesh/mesh_builder.h"
 
@@ -44,11 +43,6 @@ PolygonSoup soup_of(Bytes bytes) {
     for (int i = 0; i < size; ++i) soup.face_vertices.push_back(is_wrong ? bytes.next() - 8 : vertices > 0 ? bytes.next() % vertices : 0);
   }
   return soup;
-}
-
-[[noreturn]] void fail(const std::string& what) {
-  std::fprintf(stderr, "%s\n", what.c_str());
-  std::abort();
 }
 
 void check_promises(const hybrid_quad::BuiltMesh& built, const PolygonSoup& soup) {
