@@ -15,7 +15,7 @@ struct FeatureCurve {
   int asked_count = 0;        ///< quad edges that it is to get, exactly; 0: as many as fit
 };
 
-/// Feature and boundary edges of a mesh, as curves between corners (paper 2.5, 3.2; MATH #9).
+/// Feature and boundary edges of a mesh, as curves between corners (paper 2.5, 3.2).
 struct FeatureGraph {
   std::vector<FeatureCurve> curves;
   std::vector<int> halfedge_curve;  ///< 3 #F: the curve a half-edge lies on, or -1; the same on both sides of an edge

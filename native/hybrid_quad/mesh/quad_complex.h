@@ -9,7 +9,7 @@
 namespace hybrid_quad {
 
 /// A 2-manifold complex of quadrilaterals whose edges are darts, never vertex pairs: dart d = 4 q + i runs
-/// along side i of quad q from corner i to corner i + 1. Always manifold by construction (GUARANTEE 1),
+/// along side i of quad q from corner i to corner i + 1. Always manifold by construction (docs/guarantee.md, step 8),
 /// whatever an indexed mesh could hold: faces may meet themselves, share two edges, and vertices may have any
 /// valence.
 struct QuadComplex {
@@ -57,10 +57,10 @@ struct ComplexRepairReport {
   int split_polychords = 0;  ///< dual strips doubled to make room
 };
 
-/// Makes the complex one that an indexed polygon mesh can hold (GUARANTEE 2): removes inner valences 1 and 2,
+/// Makes the complex one that an indexed polygon mesh can hold (docs/guarantee.md, step 10): removes inner valences 1 and 2,
 /// then double edges, edges that are loops and border loops shorter than four, by splitting polychords or,
 /// where a strip would be long, by a local change. Topology, feature chains and corners stay. \throws
-/// InternalError if a round limit passes (it cannot by the argument in docs/guarantee.md)
+/// InternalError if a limit of rounds passes
 /// \param counted  #curves, or empty: those whose number of edges should stay; strips across them are split last
 ComplexRepairReport repair_complex(QuadComplex& complex, const std::vector<char>& counted = {});
 

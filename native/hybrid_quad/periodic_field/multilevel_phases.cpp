@@ -15,8 +15,8 @@ namespace {
 /// Below this many nodes a level is so cheap that it gets five times the sweeps.
 constexpr int kCheapLevel = 5000;
 
-/// Projects; where an eigenvector says nothing (without odd holonomy it may vanish on all a or all b,
-/// MATH 2.16) a phase that depends on the node alone takes its place.
+/// Projects; where an eigenvector says nothing (without odd holonomy it may vanish on all a or all b)
+/// a phase that depends on the node alone takes its place.
 void project_all(const PhaseGraph& graph, std::vector<PhasePair>& z) {
   double size = 0;
   for (const PhasePair& p : z) size = std::max({size, std::norm(p.a), std::norm(p.b)});
@@ -28,7 +28,7 @@ void project_all(const PhaseGraph& graph, std::vector<PhasePair>& z) {
 }
 
 /// Diffusion with projection after every step (Merriman, Bence, Osher 1992), the diffusion time shrinking:
-/// the eigenvector is small over whole parts of the surface, and says little there (MATH 6.1).
+/// the eigenvector is small over whole parts of the surface, and says little there.
 void diffuse_and_project(const PhaseGraph& graph, const PhaseMatrix& matrix, std::vector<PhasePair>& z) {
   double mean = 0;
   for (int i = 0; i < graph.node_count(); ++i) mean += 0.5 * (graph.weight_a[i] + graph.weight_b[i]);

@@ -9,7 +9,7 @@
 
 namespace hybrid_quad {
 
-/// What a vertex's Psi is bound to (MATH 4).
+/// What a vertex's Psi is bound to.
 enum class GridConstraint : std::uint8_t {
   kFree,
   kIsolineV,  ///< v integer in the vertex gauge: b = a (a feature runs along u)
@@ -17,7 +17,7 @@ enum class GridConstraint : std::uint8_t {
   kCorner,    ///< both: a = b = +-1
 };
 
-/// Psi of the paper at every vertex, in the complex basis of MATH 3.
+/// Psi of the paper at every vertex, in a complex basis (quarter_turn.h).
 struct PeriodicField {
   std::vector<PhasePair> psi;              ///< #V, in the vertex's gauge; |a| = |b| = 1, constraints exact
   std::vector<std::uint8_t> corner_turn;   ///< 3 #F: value in the face = turned(psi[v], corner_turn[3 f + i])
@@ -38,7 +38,7 @@ struct PeriodicFieldOptions {
   int coarsest = 300;  ///< nodes of the level whose eigenvector starts the multilevel solve
 };
 
-/// Minimises the Dirichlet energy of Psi under the feature constraints (paper 2.6, 3.2, 3.3; MATH 5, 6).
+/// Minimises the Dirichlet energy of Psi under the feature constraints (paper 2.6, 3.2, 3.3).
 PeriodicField solve_periodic_field(const WorkingSurface& surface, const FrameField& frames,
                                    const PeriodicFieldOptions& options, const RunContext& context);
 

@@ -7,7 +7,7 @@
 
 namespace hybrid_quad {
 
-/// The form of a PhaseGraph as a real symmetric matrix, its constraints eliminated (MATH 4, 5): a free node
+/// The form of a PhaseGraph as a real symmetric matrix, its constraints eliminated: a free node
 /// has four unknowns (Re a, Im a, Re b, Im b), one on an isoline two, a corner one, each along an orthonormal
 /// direction of the constraint's space. E = 1/2 y^T H y.
 struct PhaseMatrix {

@@ -8,7 +8,7 @@
 namespace hybrid_quad {
 
 /// A coordinate along every feature curve whose integer points are the quad vertices on that curve. Both sides of a
-/// curve read it, so quads on either side meet in the same vertices (GUARANTEE 4).
+/// curve read it, so quads on either side meet in the same vertices (docs/guarantee.md, step 4).
 struct CurveCoordinates {
   struct Curve {
     std::vector<std::int64_t> position;  ///< at the curve's vertices, strictly increasing, kGridUnit = one quad edge

@@ -24,7 +24,7 @@ struct SingularPatches {
 };
 
 struct PatchOptions {
-  double longest_edge = 0.4;   ///< refinement limit, in quads (paper 4.4 and MATH #7)
+  double longest_edge = 0.4;   ///< refinement limit, in quads (paper 4.4)
   double persistence = 0.3;    ///< Morse-Smale pairs below this are cancelled
   int widening_rounds = 12;
 };

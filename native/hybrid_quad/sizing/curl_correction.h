@@ -27,7 +27,7 @@ bool is_sound_correction(const std::array<double, 4>& x);
 /// measures the same in both: the minimum over X of
 ///   sum over edges  w |X_f d_f + turn (X_g d_g)|^2  +  lambda sum over faces  area (|X - I|^2 weighted 1 on the diagonal, 2 off it, or
 /// more where directions are to stay)
-/// and of the transversal part of feature edges (MATH 7). By VertexPotentials for small lambda, by EdgeMultipliers otherwise.
+/// and of the transversal part of feature edges. By VertexPotentials for small lambda, by EdgeMultipliers otherwise.
 /// \return #F matrices; the identity where nothing couples
 std::vector<std::array<double, 4>> curl_correction(const WorkingSurface& surface, const FrameField& field,
                                                    const CurlCorrectionOptions& options, const RunContext& context);

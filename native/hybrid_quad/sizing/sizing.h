@@ -9,7 +9,7 @@ namespace hybrid_quad {
 struct SizingOptions {
   bool conformal = false;           ///< first scale by the conformal factor that makes the field integrable
   double conformal_clip = 2.0;      ///< bound of that factor, both ways
-  bool correct_curl = true;         ///< 4-parameter curl correction of MATH 7
+  bool correct_curl = true;         ///< curl correction by four parameters a face (curl_correction)
   double curl_weight = 1e-5;        ///< lambda: small = integrable frames, large = the asked frames
   double feature_weight = 30.0;     ///< keeps features isolines during the correction
   std::vector<double> direction_weight;  ///< #F or empty: how firmly frames keep their directions, 1 = as any

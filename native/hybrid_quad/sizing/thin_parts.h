@@ -8,7 +8,7 @@
 namespace hybrid_quad {
 
 /// Lowers target lengths where the surface is a tube or a tip so thin that fewer than four quads would go around it
-/// (GUARANTEE 3). Wide thin sheets are left alone. Thickness is the diameter of the largest ball inside that touches the
+/// (docs/decisions/0005). Wide thin sheets are left alone. Thickness is the diameter of the largest ball inside that touches the
 /// surface at a vertex (shrinking ball of Ma et al. 2012), measured at about four vertices a quad.
 /// \param length  asked quad edge length (scene units)
 /// \param target  #V, lowered in place to no less than least_ratio * length

@@ -15,7 +15,7 @@ namespace hybrid_quad {
 /// The correction for small lambda: on a surface cut to disks the corrected frames are the gradients of two functions, so
 /// that edges measure the same from both sides but where they are cut, and there to within lambda. A quarter of
 /// the corrections' unknowns, a third of EdgeMultipliers', and couplings between neighbouring vertices only. The energy is that of
-/// curl_correction (MATH 7), with infinite weight on edges that are not cut (docs/decisions/0036).
+/// curl_correction, with infinite weight on edges that are not cut (docs/decisions/0036).
 class VertexPotentials {
  public:
   VertexPotentials(const TriangleMesh& mesh, const FrameField& field, const CorrectionCosts& costs);

@@ -7,7 +7,7 @@
 namespace hybrid_quad {
 
 /// Moves dislocations through the surface until they meet and vanish, a cone takes them in, or they leave
-/// over a feature or boundary that they slide along (design/FEW_SINGULARITIES 1.6). Always the shortest move
+/// over a feature or boundary that they slide along (docs/decisions/0004). Always the shortest move
 /// first. Only jumps change, and the values of cones that took something in.
 void cancel_dislocations(const WorkingSurface& surface, const FrameField& frames, const GridMeasure& measure,
                          const SpanningOptions& options, const RunContext& context, LiftedGrid& grid);

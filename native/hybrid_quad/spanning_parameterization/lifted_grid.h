@@ -61,7 +61,7 @@ inline int along_sign(const GridMeasure& measure, int h) {
 /// The fewest quad edges that a feature curve may get.
 int fewest_curve_edges(const FeatureCurve& curve);
 
-/// Pins the cones of the field to grid points (a posteriori: design/FEW_SINGULARITIES), relaxes the others
+/// Pins the cones of the field to grid points (afterwards: docs/decisions/0004), relaxes the others
 /// around them, and chooses every edge's jump once, by rounding what the frames of both sides measure on
 /// average. Feature edges get exactly nothing across, curves with an asked count that many quad edges, and those that
 /// would vanish their fewest.

@@ -39,7 +39,7 @@ struct SpanningOptions {
 };
 
 /// Lifts Psi to differences along edges (one rounding per edge, from the average of both sides), moves
-/// integers so that dislocations cancel (design/FEW_SINGULARITIES), and solves the Poisson problem that
+/// integers so that dislocations cancel (docs/decisions/0004), and solves the Poisson problem that
 /// spreads the slip. (Paper 4.2; the tree-free form: every edge is lifted alone, so seams cannot mismatch and
 /// all defects are charges of faces.)
 SpanningParameterization build_spanning_parameterization(const WorkingSurface& surface,
