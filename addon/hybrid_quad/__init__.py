@@ -6,11 +6,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from .core.errors import Cancelled, InputError, InternalError
 
+TYPE_CHECKING = (
+    False  # not typing's, which takes longer to load than all else before a command can answer an interruption
+)
 if TYPE_CHECKING:
+    from typing import Any
+
     from .core.check import Defect, check
     from .core.mesh_objects import mesh_arrays
     from .core.options import RemeshOptions

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,16 @@ def test_import_needs_neither_blender_nor_what_only_files_need():
     )
     done = run(code)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_command_answers_interruptions_before_it_loads_anything_else():
+    code = (
+        f"import os, sys; sys.path.insert(0, {str(Path(hybrid_quad.__file__).parents[1])!r}); before = set(sys.modules)\n"
+        "import hybrid_quad.cli.program\n"
+        "print(*(name for name in set(sys.modules) - before if not name.startswith('hybrid_quad')))\n"
+    )
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["__future__"], done.stderr
 
 
 def test_a_missing_compiled_part_is_explained_when_it_is_needed():

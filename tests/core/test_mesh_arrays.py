@@ -43,6 +43,15 @@ def test_wrong_shapes_and_types_are_refused():
             as_edges(edges)
 
 
+def test_complex_numbers_do_not_lose_a_part():
+    points = np.eye(3) + 1j
+    for vertices in (points, points.tolist()):
+        with pytest.raises(TypeError, match="vertices must be real"):
+            as_vertices(vertices)
+    with pytest.raises(TypeError, match="density must be real"):
+        hybrid_quad.remesh(np.eye(3), [[0, 1, 2]], density=np.ones(3) + 0j)
+
+
 def test_missing_faces_are_told_as_such():
     for vertices in (np.zeros((3, 3)), [[0.0, 0.0, 0.0]]):
         with pytest.raises(TypeError, match="faces are missing"):

@@ -1,3 +1,4 @@
+import os
 import struct
 
 import numpy as np
@@ -7,7 +8,7 @@ from fuzz.fuzz_readers import damaged, verdict_on
 from hybrid_quad.core import mesh_formats
 from hybrid_quad.core.file_places import MeshFileError, replacing
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
-from hybrid_quad.core.wish_files import read_edges, read_polylines
+from hybrid_quad.core.wish_files import read_edges, read_line_elements, read_polylines
 from support import surfaces
 
 
@@ -101,6 +102,14 @@ def test_rows_of_off_may_go_on_in_further_lines(tmp_path, faces):
     assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
 
 
+@pytest.mark.timeout(30)
+def test_a_row_of_off_over_very_many_lines_takes_no_longer_than_on_one(tmp_path):
+    corners = 300_000
+    text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + f"{corners}\n" + "1\n" * corners
+    _, polygons = read_mesh(file_with(tmp_path, "a.off", text))
+    assert polygons.sizes.tolist() == [corners]
+
+
 PLY = """ply
 format ascii 1.0
 element vertex 5
@@ -182,6 +191,19 @@ def test_ply_faces_that_are_no_numbers_of_vertices_are_refused(tmp_path):
         read_mesh(file_with(tmp_path, "a.ply", PLY.replace("uchar int", "uchar float")))
 
 
+def test_several_elements_of_faces_are_one_after_the_other(tmp_path):
+    text = PLY.replace("end_header\n", "element face 1\nproperty list uchar uint vertex_index\nend_header\n")
+    _, polygons = read_mesh(file_with(tmp_path, "a.ply", text + "3 0 1 4\n"))
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2], [0, 1, 4]]
+
+
+def test_faces_of_one_of_several_elements_of_vertices_are_refused(tmp_path):
+    vertices, _, faces = PLY.partition("element face")
+    again = vertices[vertices.index("element vertex") :]
+    with pytest.raises(MeshFileError, match="more than one element vertex"):
+        read_mesh(file_with(tmp_path, "a.ply", vertices + again + "element face" + faces))
+
+
 @pytest.mark.parametrize(
     ("strips", "triangles"),
     [
@@ -232,7 +254,59 @@ def test_binary_stl(tmp_path):
     assert [vertices[face].tolist() for face in rows(polygons)] == [np.array(t, float).tolist() for t in triangles]
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".off"])
+def ascii_stl(name):
+    triangle = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    return f"solid {name}\n{triangle}endsolid {name}\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ascii_stl("my vertex model"),
+        ascii_stl("x").replace("\n", "\r"),
+        ascii_stl("a vertex b").replace("\n", "\r"),
+        "\ufeff" + ascii_stl("x"),
+        ascii_stl("vertex").replace("\n", " ", 7),
+    ],
+    ids=["name", "carriage returns", "name, carriage returns", "mark", "one line"],
+)
+def test_stl_texts_of_all_kinds(tmp_path, text):
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.stl", text))
+    assert vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert rows(polygons) == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize("filler", [b"\0", b" "])
+def test_binary_stl_that_begins_as_a_text_does(tmp_path, filler):
+    triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    content = b"solid".ljust(80, filler) + struct.pack("<I", 1) + triangle
+    _, polygons = read_mesh(file_with(tmp_path, "a.stl", content + b"more"))
+    assert rows(polygons) == [[0, 1, 2]]
+    with pytest.raises(MeshFileError, match="ends too early"):
+        read_mesh(file_with(tmp_path, "a.stl", content[:-5]))
+
+
+def test_ply_text_with_carriage_returns(tmp_path):
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.ply", PLY.replace("\n", "\r")))
+    assert len(vertices) == 5
+    assert rows(polygons) == [[0, 1, 2, 3], [1, 4, 2]]
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.obj", "v 0 0 0\nv nan(ind) 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("a.off", "OFF\n3 1 0\n0 0 0\n-nan(ind) 0 0\n0 1 0\n3 0 1 2\n"),
+        ("a.ply", PLY.replace("\n1 0 0 1", "\n-nan(ind) 0 0 1")),
+        ("a.stl", ascii_stl("x").replace("vertex 1", "vertex NaN(IND)")),
+    ],
+)
+def test_what_c_prints_for_no_number_is_left_for_the_mesh_check(tmp_path, name, content):
+    vertices, _ = read_mesh(file_with(tmp_path, name, content))
+    assert np.isnan(vertices).sum() == 1
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".off", ".ply"])
 def test_a_mark_of_the_byte_order_before_the_text_is_none_of_it(tmp_path, suffix):
     vertices, quads = surfaces.quad_box(1)
     path = tmp_path / f"a{suffix}"
@@ -257,6 +331,19 @@ def test_a_mark_of_the_byte_order_before_the_text_is_none_of_it(tmp_path, suffix
         ("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", "ends before"),
         ("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n-13 0 1 2\n", "face 1, .*-13"),
         ("a.off", "4OFF\n0 0 0\n", "4OFF"),
+        ("a.obj", ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").encode("utf-16"), "no OBJ file"),
+        ("a.obj", b"\x00\x01\xfe" * 9, "no OBJ file"),
+        ("a.off", "OFF\n", "how many"),
+        ("a.off", "OFF\n4\n0 0 0\n", "how many"),
+        ("a.off", "OFF BINARY\n", "binary"),
+        ("a.off", "OFF\n4.0 4 0\n", "number of vertices is .*'4.0'"),
+        ("a.off", "OFF -4 -4\n", "-4 vertices"),
+        ("a.off", "OFF\n1 2 0\n0 0 0\n1 0\nnan 0\n", "corners of face 1, .*'nan'"),
+        ("a.off", "OFF\n1 1 0\n0 0 0\n1 x\n", "corner of face 0, .*'x'"),
+        ("a.ply", PLY.replace("4 0 1 2 3", "4 0 1 2.0 3"), "corner of face 0, .*'2.0'"),
+        ("a.ply", PLY.replace("3 1 4 2", "comment 3 1 4 2"), "list of face 1, .*'comment'"),
+        ("a.ply", PLY.replace("1 1 0 1", "1 ? 0 1"), "vertex 2, .*'[?]'"),
+        ("a.stl", ascii_stl("x").replace("vertex 1", "vertex 1.#QNAN"), "vertex 1, .*'1.#qnan'"),
         ("a.ply", b"\x00\x01\x02", "PLY"),
         ("a.ply", PLY[:-12], "PLY"),
         ("a.stl", b"short", "STL"),
@@ -280,6 +367,38 @@ def test_missing_files_and_folders(tmp_path):
     (tmp_path / "folder.obj").mkdir()
     with pytest.raises(MeshFileError, match="is a folder"):
         mesh_formats.check_writable(tmp_path / "folder.obj")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+@pytest.mark.timeout(30)
+@pytest.mark.parametrize("suffix", mesh_formats.READABLE)
+def test_a_pipe_is_not_waited_for(tmp_path, suffix):
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    with pytest.raises(MeshFileError, match="no regular file"):
+        read_mesh(tmp_path / f"pipe{suffix}")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and permissions of POSIX")
+def test_a_link_stays_one_and_a_file_that_is_replaced_its_permissions(tmp_path):
+    place = file_with(tmp_path, "place.obj", "old")
+    place.chmod(0o600)
+    link = tmp_path / "link.obj"
+    link.symlink_to("place.obj")
+    with replacing(link) as file:
+        file.write(b"new")
+    assert link.is_symlink()
+    assert place.read_text() == "new"
+    assert place.stat().st_mode & 0o777 == 0o600
+    link.unlink()
+    link.symlink_to(tmp_path / "none" / "place.obj")
+    with pytest.raises(MeshFileError, match="none does not exist"):
+        mesh_formats.check_writable(link)
+
+
+def test_names_may_be_as_long_as_the_system_takes_them(tmp_path):
+    with replacing(tmp_path / f"{'n' * 240}.obj") as file:
+        file.write(b"new")
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"new"]
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -306,6 +425,28 @@ def test_lines_are_read_from_obj_and_text(tmp_path):
         (_, first), (_, second) = read_polylines(path)
         assert first.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
         assert second.tolist() == [[1, 1, 0], [0, 0, 0]]
+
+
+def test_a_line_may_go_on_behind_a_backslash(tmp_path):
+    path = file_with(tmp_path, "lines.obj", "v 0 0 0\n v 1 \\\n0 0\nv 1 1 0\nl 1 \\\n2 -1 # two edges\nl 1 x\n")
+    with pytest.raises(MeshFileError, match="line 7"):
+        read_polylines(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "edges"),
+    [
+        ("l 1 2 # an edge", [[0, 1]]),
+        ("l 1 \\\r\n2", [[0, 1]]),
+        ("\tl 1/4 2/7 -1", [[0, 1], [1, 3]]),
+        ("l 1 2.5", []),
+        ("# l 1 2 \\\nl 2 3", []),
+        ("l 0 1", [[-1, 0]]),
+    ],
+)
+def test_lines_of_a_mesh_are_read_as_the_mesh_is(tmp_path, line, edges):
+    path = file_with(tmp_path, "a.obj", f"v 0 0 0\nv 1 0 0\n  v 0 1 0\nv\t5 5 5\nf 1 2 3\n{line}\n")
+    assert read_line_elements(path).tolist() == edges
 
 
 @pytest.mark.parametrize(

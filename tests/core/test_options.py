@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pytest
 
 from hybrid_quad import RemeshOptions
@@ -46,6 +47,8 @@ from hybrid_quad.core import native
         {"threads": 2**16},
         {"time_limit": 0.0},
         {"time_limit": math.nan},
+        {"quads": np.array([40])},
+        {"seed": np.array([1, 2])},
     ],
     ids=str,
 )

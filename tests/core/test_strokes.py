@@ -103,6 +103,38 @@ def test_what_makes_no_sense_is_refused(stroke, radius):
         hybrid_quad.guides_from_strokes(*grid(4, 4), [stroke], radius=radius)
 
 
+@pytest.mark.parametrize("at", [1e12, 1e300])
+def test_lines_so_far_off_that_all_is_as_near_are_refused(at):
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        guides_from_strokes(*grid(4, 4), [[(0, 0, 0), (1, 0, 0)], [(at, 0, 0), (0, at, 0)]], radius=1.0)
+    assert caught.value.code == "stroke_too_far"
+
+
+@pytest.mark.parametrize("vertex", [-99, 99])
+def test_faces_of_vertices_that_do_not_exist_are_named(vertex):
+    vertices, faces = grid(4, 4)
+    faces = np.concatenate([faces, [[0, 1, vertex]]])
+    line = [(0, 0, 0), (1, 0, 0)]
+    for run in (
+        lambda: guides_from_strokes(vertices, faces, [line], 1.0),
+        lambda: hybrid_quad.remesh(vertices, faces, strokes=[line]),
+    ):
+        with pytest.raises(hybrid_quad.InputError) as caught:
+            run()
+        assert (caught.value.code, caught.value.elements) == ("index_out_of_range", (len(faces) - 1,))
+
+
+def test_vertices_that_are_nowhere_do_not_matter_unless_faces_have_them():
+    vertices, faces = grid(4, 4)
+    line = [(0, 0.5, 0), (1, 0.5, 0)]
+    loose = guides_from_strokes(np.concatenate([vertices, [[np.nan, 0, 0]]]), faces, [line], 0.3)
+    assert np.array_equal(loose[:-1], guides_from_strokes(vertices, faces, [line], 0.3))
+    vertices[faces[0, 0]] = np.inf
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        guides_from_strokes(vertices, faces, [line], 0.3)
+    assert (caught.value.code, caught.value.elements) == ("non_finite_vertex", (faces[0, 0],))
+
+
 def test_one_line_for_a_list_of_lines_is_told_as_such():
     with pytest.raises(ValueError, match="strokes"):
         checked_strokes([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
@@ -124,6 +156,13 @@ def test_nearest_points_are_nearest():
             np.vstack([vertices[triangles[triangle]].T, np.ones(3)]), np.append(place, 1), rcond=None
         )
         assert share.min() > -1e-9 and (not len(rest) or rest[0] < 1e-18)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_radius_far_below_the_points_distances_finds_those_in_one_place():
+    points = np.random.default_rng(1).random((50, 3))
+    parts = [np.stack(part[:2], axis=1) for part in pairs_within(points[:3], points, 1e-300)]
+    assert np.concatenate(parts).tolist() == [[0, 0], [1, 1], [2, 2]]
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.4, 10.0])

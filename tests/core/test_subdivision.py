@@ -61,6 +61,11 @@ def test_distances_are_those_to_the_nearest_point():
     np.testing.assert_allclose(found, [2, 1, np.sqrt(2), 0], atol=1e-12)
 
 
+def test_points_that_are_nowhere_have_no_distance():
+    with pytest.raises(ValueError, match="row 1 "):
+        hybrid_quad.surface_distances([(0, 0, 0), (0, np.nan, 0)], CUBE, SIDES)
+
+
 @pytest.mark.parametrize(
     ("options", "code"),
     [({"crease_edges": [(0, 7)]}, "unknown_edge"), ({"sharp_vertices": [8]}, "index_out_of_range")],
@@ -76,6 +81,8 @@ def test_faces_that_are_none_are_named():
         with pytest.raises(hybrid_quad.InputError) as caught:
             hybrid_quad.subdivide(CUBE, faces)
         assert (caught.value.code, list(caught.value.elements)) == (code, [0])
+    with pytest.raises(hybrid_quad.InputError, match="no faces"):
+        hybrid_quad.subdivide([], [])
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """The command as scripts see it: exit status, files and messages."""
 
+import contextlib
+import errno
 import json
 import os
 import re
@@ -15,6 +17,7 @@ import pytest
 import hybrid_quad
 from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
+from hybrid_quad.core.file_places import replacing
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
@@ -80,6 +83,82 @@ def test_progress_goes_to_the_error_stream_and_quiet_silences_it(tmp_path, torus
     assert "quads" in talkative.err
     main(["remesh", torus, out, "--quads", "200", "--quiet"])
     assert capfd.readouterr() == ("", "")
+
+
+def run_alone(*words, **more):
+    """The command in a process of its own; its messages are dropped unless `more` says where they go."""
+    command = [sys.executable, "-m", "hybrid_quad", *map(str, words)]
+    return subprocess.run(command, check=False, **{"stderr": subprocess.DEVNULL, **more})
+
+
+def closed_pipe():
+    """A file to write to that nobody reads."""
+    read, write = os.pipe()
+    os.close(read)
+    return os.fdopen(write, "wb", buffering=0)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="streams of POSIX")
+@pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
+@pytest.mark.parametrize("stream", ["full", "closed", "unread"])
+def test_messages_that_nobody_takes_end_no_run(tmp_path, torus, moebius, monkeypatch, stream, unbuffered):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    with closed_pipe() if stream == "unread" else Path("/dev/full").open("wb") as errors:
+        more = {"preexec_fn": lambda: os.close(2)} if stream == "closed" else {"stderr": errors}
+        out = tmp_path / "out.obj"
+        assert run_alone("remesh", torus, out, "--quads", "100", **more).returncode == exit_codes.OK
+        assert set(read_mesh(out)[1].sizes.tolist()) == {4}
+        assert run_alone("remesh", moebius, out, **more).returncode == exit_codes.CANNOT_REMESH
+        assert run_alone("remesh", **more).returncode == exit_codes.WRONG_USAGE
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
+def test_findings_that_nobody_takes_are_a_file_that_cannot_be_written(tmp_path, torus, monkeypatch, unbuffered):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    report = tmp_path / "defects.json"
+    with Path("/dev/full").open("wb") as full:
+        done = run_alone("check", torus, "--report", report, stdout=full, stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (
+        exit_codes.WRONG_USAGE,
+        b"hybrid-quad: standard output: No space left on device\n",
+    )
+    assert json.loads(report.read_text()) == {"defects": []}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
+@pytest.mark.parametrize(
+    ("encoding", "name", "shown"),
+    [("utf-8:strict", b"bad\xff.obj", rb"bad\udcff.obj"), ("ascii", "\u00fc.obj".encode(), rb"\xfc.obj")],
+)
+def test_a_name_that_the_output_has_no_letters_for_is_written_with_numbers(
+    tmp_path, torus, monkeypatch, encoding, name, shown
+):
+    monkeypatch.setenv("PYTHONIOENCODING", encoding)
+    place = os.path.join(os.fsencode(tmp_path), name)
+    os.rename(torus, place)
+    done = run_alone("check", os.fsdecode(place), stdout=subprocess.PIPE)
+    assert done.returncode == exit_codes.OK
+    assert done.stdout.splitlines()[0].endswith(shown + b": 800 vertices, 1600 faces"), done.stdout
+
+
+def test_lines_of_a_mesh_that_are_none_are_no_defect_of_it(tmp_path, torus):
+    mesh = Path(torus)
+    mesh.write_text(mesh.read_text() + "l 1 2 # an edge\nl 1 \\\n2\nl 1 2.5\n")
+    assert main(["check", torus]) == exit_codes.OK
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize(
+    "words", [["remesh", "out.obj"], ["check"], ["case", "-o", "case.zip"]], ids=lambda words: words[0]
+)
+def test_a_mesh_from_a_pipe_is_refused_at_once(tmp_path, monkeypatch, capfd, words):
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.obj")
+    assert main([words[0], "pipe.obj", *words[1:]]) == exit_codes.WRONG_USAGE
+    assert "pipe.obj: is no regular file" in capfd.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe.obj"]
 
 
 def test_the_stages_are_dumped(tmp_path, torus):
@@ -168,6 +247,22 @@ def test_stages_that_have_no_folder_are_wrong_usage(tmp_path, torus, capfd):
     assert "is no folder" in capfd.readouterr().err
     unchanged(tmp_path, ["remesh", torus, out, "--dump-stages", f"{torus}/stages"], exit_codes.WRONG_USAGE)
     assert "torus.obj/stages" in capfd.readouterr().err
+
+
+def test_a_stage_that_cannot_be_written_is_named(tmp_path, torus, capfd, monkeypatch):
+    import meshio
+
+    def fail(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(meshio.Mesh, "write", fail)
+    stages, report = tmp_path / "stages", tmp_path / "report.json"
+    arguments = ["remesh", torus, str(tmp_path / "out.obj"), "--quads", "100", "--dump-stages", str(stages)]
+    assert main([*arguments, "--quiet", "--report", str(report)]) == exit_codes.WRONG_USAGE
+    message = capfd.readouterr().err.removeprefix("hybrid-quad: ").strip()
+    assert message.startswith(f"{stages}{os.sep}00_") and message.endswith("No space left on device")
+    made = json.loads(report.read_text())
+    assert (made["status"], made["message"]) == ("unwritable_file", message)
 
 
 def test_unreadable_files(tmp_path, torus, capfd):
@@ -314,6 +409,35 @@ def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more)
     assert "File too large" in child.stderr
     assert out.read_text() == "old result"
     assert set(tmp_path.iterdir()) == files
+
+
+@pytest.mark.parametrize("is_held", [True, False])
+def test_a_result_that_cannot_be_written_is_no_success_in_the_report(tmp_path, torus, monkeypatch, is_held):
+    from hybrid_quad.core import held_mesh, mesh_io
+
+    def fail(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    out, report = tmp_path / ("out.obj" if is_held else "out.ply"), tmp_path / "report.json"
+    out.write_text("old result")
+    if is_held:
+        monkeypatch.setattr(held_mesh, "replacing", lambda path: failing(path, fail))
+    else:
+        monkeypatch.setattr(mesh_io, "_write_ply", fail)
+    arguments = ["remesh", torus, str(out), "--quads", "100", "--report", str(report)]
+    assert main(arguments) == exit_codes.WRONG_USAGE
+    made = json.loads(report.read_text())
+    assert (made["status"], made["code"]) == ("unwritable_file", "unwritable_file")
+    assert made["message"] == f"{out}: No space left on device"
+    assert out.read_text() == "old result"
+
+
+@contextlib.contextmanager
+def failing(path, fail):
+    """A file in the place of another that takes nothing."""
+    with replacing(path) as file:
+        fail()
+        yield file
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder in which nobody may make files")

@@ -66,6 +66,13 @@ def test_a_length_that_would_take_too_many_quads():
     assert caught.value.code == "too_many_quads"
 
 
+def test_lengths_at_the_ends_of_what_numbers_can_be():
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(*surfaces.box(1), edge_length=1e-200)
+    assert caught.value.code == "too_many_quads"
+    assert len(hybrid_quad.remesh(*surfaces.box(1), edge_length=1e300).quads) >= 6
+
+
 def fin():
     vertices, faces = surfaces.sphere(5)
     a, b = faces[0, :2]

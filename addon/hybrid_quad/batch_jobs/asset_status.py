@@ -30,8 +30,9 @@ class AssetStatus:
     asset, source, object : str
         The asset's name, its file, and the object in that.
     status : str
-        ``"ok"``; ``"input_error"``, ``"wrong_usage"``, ``"unreadable_file"``, ``"internal_error"``, ``"time_limit"`` and
-        ``"memory_limit"`` as in the reports of single runs; ``"crashed"``, or ``"lost"`` where it is to be run again.
+        ``"ok"``; ``"input_error"``, ``"wrong_usage"``, ``"unreadable_file"``, ``"unwritable_file"``,
+        ``"internal_error"``, ``"time_limit"`` and ``"memory_limit"`` as in the reports of single runs; ``"crashed"``, or
+        ``"lost"`` where it is to be run again.
     code, message : str
         What is wrong: a stable name, and a sentence.
     job_hash : str

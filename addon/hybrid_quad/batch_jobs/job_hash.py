@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 from .. import __version__
+from ..core.file_places import require_regular
 from .asset import Asset, BatchPlan
 from .settings import LIMITS, files_of
 
@@ -38,6 +39,7 @@ def job_hash(asset: Asset, plan: BatchPlan, version: str = __version__) -> str:
 
 def file_hash(path: Path) -> str:
     """SHA-256 of a file, as hexadecimal digits."""
+    require_regular(path)
     with path.open("rb") as file:
         digest = hashlib.sha256()
         while block := file.read(1 << 20):

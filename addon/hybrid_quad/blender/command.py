@@ -18,7 +18,7 @@ from ..cli.main import main as package_main
 from ..cli.messages import describe_defect, describe_symmetry, what_became_of
 from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.file_places import MeshFileError, check_apart, check_place, replacing
+from ..core.file_places import MeshFileError, UnwritableFileError, check_apart, check_place, replacing
 from ..core.options import RemeshOptions
 from ..core.parent_process import end_with_stdin
 from . import case_command
@@ -220,6 +220,7 @@ _STATUS_OF_ERROR: dict[type, tuple[str, int]] = {
     InputError: ("input_error", exit_codes.CANNOT_REMESH),
     UsageError: ("wrong_usage", exit_codes.WRONG_USAGE),
     MeshFileError: ("unwritable_file", exit_codes.WRONG_USAGE),
+    UnwritableFileError: ("unwritable_file", exit_codes.WRONG_USAGE),
     ValueError: ("wrong_usage", exit_codes.WRONG_USAGE),
     Cancelled: ("cancelled", exit_codes.CANCELLED),
     MemoryError: ("memory_limit", exit_codes.CANCELLED),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..batch_jobs.settings import Settings, files_of
 from ..core.errors import InternalError
-from ..core.file_places import MeshFileError
+from ..core.file_places import MeshFileError, require_regular
 from ..core.mesh_formats import READABLE
 from ..core.mesh_io import read_mesh
 from ..core.part_files import read_part, write_polygons
@@ -28,6 +28,7 @@ def require_files(source: Path, settings: Settings) -> None:
         raise MeshFileError(f"{source}: cannot read '{source.suffix}' files, only {', '.join(READABLE)}")
     for path in (source, *files_of(settings).values()):
         try:
+            require_regular(path)
             with path.open("rb"):
                 pass
         except OSError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections import Counter
 from types import TracebackType
@@ -30,17 +31,19 @@ class BatchProgress:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._bar is not None:
-            self._bar.close()
+            with contextlib.suppress(OSError):  # a terminal that is gone
+                self._bar.close()
 
     def update(self, status: AssetStatus) -> None:
         """Counts an asset."""
         self._counts[status.status] += 1
         message = f"{status.asset}: {status.status}{': ' + status.message if status.message else ''}"
         if self._bar is not None:
-            if status.status != OK:
-                self._bar.write(f"hybrid-quad: {message}", file=sys.stderr)
-            self._bar.set_postfix({name: times for name, times in self._counts.items()}, refresh=False)
-            self._bar.update()
+            with contextlib.suppress(OSError):
+                if status.status != OK:
+                    self._bar.write(f"hybrid-quad: {message}", file=sys.stderr)
+                self._bar.set_postfix({name: times for name, times in self._counts.items()}, refresh=False)
+                self._bar.update()
         elif not self._quiet:
             done = sum(self._counts.values())
             quads = f", {status.report.get('quads')} quads, {status.seconds:.1f} s" if status.status == OK else ""

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..core.file_places import check_apart, check_place, replacing
 from . import exit_codes
-from .messages import describe_defect, verdict_on
+from .messages import describe_defect, show, verdict_on
 
 
 def add_to(commands: Any) -> None:
@@ -35,13 +35,13 @@ def run(arguments: argparse.Namespace) -> int:
         check_apart(arguments.report, [arguments.input])
     vertices, polygons = read_mesh(arguments.input)
     defects = check(vertices, polygons, edges=read_line_elements(arguments.input))
-    print(f"{arguments.input}: {len(vertices)} vertices, {len(polygons.sizes)} faces")
-    for defect in defects:
-        print(f"  {describe_defect(defect.as_json(), verdict_on(defect.as_json()))}")
-    if not defects:
-        print("nothing is wrong with it")
     if arguments.report:
         text = json.dumps({"defects": [defect.as_json() for defect in defects]}, indent=2) + "\n"
         with replacing(arguments.report) as file:
             file.write(text.encode())
+    show(f"{arguments.input}: {len(vertices)} vertices, {len(polygons.sizes)} faces")
+    for defect in defects:
+        show(f"  {describe_defect(defect.as_json(), verdict_on(defect.as_json()))}")
+    if not defects:
+        show("nothing is wrong with it")
     return exit_codes.OK if all(defect.repairable for defect in defects) else exit_codes.CANNOT_REMESH

@@ -14,9 +14,9 @@ from typing import NoReturn
 
 from .. import __version__
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.file_places import MeshFileError
+from ..core.file_places import MeshFileError, name_and_reason
 from . import exit_codes
-from .messages import describe_elements, say
+from .messages import describe_elements, say, write_error
 from .setting_arguments import UsageProblem
 
 COMMANDS = ("remesh", "check", "batch", "case")
@@ -36,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parser.parse_args(given)
     except SystemExit as stop:  # argparse has printed usage, help or version
         return int(stop.code or 0)
+    except OSError as error:  # the help, which nobody took
+        say(name_and_reason(error))
+        return exit_codes.WRONG_USAGE
     with contextlib.suppress(ValueError):  # not in the main thread, where handlers cannot be set
         # A job scheduler's "terminate" is answered like Ctrl-C.
         signal.signal(signal.SIGTERM, _interrupt)
@@ -53,8 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         say(f"{options.input}: this machine has not enough memory for the run; nothing was written")
         return exit_codes.CANCELLED
-    except OSError as error:  # of a folder of stages, say: what else is read or written has errors of its own
-        say(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except OSError as error:  # of the output stream, say: what else is read or written has errors of its own
+        say(name_and_reason(error))
         return exit_codes.WRONG_USAGE
     except Exception as error:
         kind = "" if isinstance(error, InternalError) else f"{type(error).__name__}: "
@@ -75,7 +78,8 @@ class _Parser(argparse.ArgumentParser):
     """Says in a line what is wrong, which the usage of thirty options would hide, and where to read on."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(exit_codes.WRONG_USAGE, f"{self.prog}: {message}\n{self.prog} --help tells more\n")
+        write_error(f"{self.prog}: {message}\n{self.prog} --help tells more\n")
+        raise SystemExit(exit_codes.WRONG_USAGE)
 
 
 def _parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:

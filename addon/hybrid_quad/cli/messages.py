@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
-from typing import Any
+from typing import Any, TextIO
 
 from ..core.errors import InputError
 
@@ -12,7 +13,39 @@ _SHOWN = 10
 
 def say(text: str) -> None:
     """One message on the error stream, under the program's name."""
-    print(f"hybrid-quad: {text}", file=sys.stderr, flush=True)
+    write_error(f"hybrid-quad: {text}\n")
+
+
+def write_error(text: str) -> None:
+    """Lines on the error stream; lost where there is none, or it takes nothing: what is said decides about no run."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError, ValueError):  # ValueError: closed
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
+
+def show(text: str) -> None:
+    """One line of what was asked for, on the output stream; letters that it lacks, as of a file's name, as numbers.
+
+    Raises
+    ------
+    OSError
+        If the stream takes nothing; names it.
+    """
+    try:
+        print(_in_encoding(text, sys.stdout), flush=True)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, "standard output") from error
+
+
+def _in_encoding(text: str, stream: TextIO | None) -> str:
+    if stream is None:
+        return text
+    try:
+        text.encode(stream.encoding, stream.errors or "strict")
+    except UnicodeEncodeError:
+        return text.encode(stream.encoding, "backslashreplace").decode(stream.encoding)
+    return text
 
 
 def list_elements(kind: str, elements: list[str]) -> str:

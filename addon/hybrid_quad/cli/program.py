@@ -1,11 +1,12 @@
-"""The process of ``hybrid-quad``: what is to be settled before NumPy is loaded, and the command."""
+"""The process of ``hybrid-quad``: what is to be settled before NumPy is loaded, and the command.
+
+Loads next to nothing itself, nor does what Python loads before it: only in :func:`main` is an interruption answered.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
-from typing import NoReturn
 
 from . import exit_codes
 
@@ -20,16 +21,23 @@ def main() -> int:
 
         status = command()
     except KeyboardInterrupt:  # before there is a command to answer it
-        print("hybrid-quad: cancelled; nothing was written", file=sys.stderr)
+        from .messages import say
+
+        say("cancelled; nothing was written")
         status = exit_codes.CANCELLED
+    _finish_streams()
     if sys.argv[1:2] == ["remesh"]:
-        _end(status)
+        # At once: all files are closed, and to give the memory back piece by piece takes a thirtieth of a short run.
+        os._exit(status)
     return status
 
 
-def _end(status: int) -> NoReturn:
-    """Ends the process at once: all files are closed, and to give the memory back piece by piece takes a thirtieth of a short run."""
+def _finish_streams() -> None:
+    """Writes out what is left. A stream that takes nothing then leads nowhere: Python would end with another status."""
     for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(OSError, ValueError, AttributeError):  # closed, or none
+        try:
             stream.flush()
-    os._exit(status)
+        except (AttributeError, ValueError):  # none, or closed
+            pass
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

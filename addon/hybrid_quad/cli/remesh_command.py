@@ -62,10 +62,14 @@ def run(arguments: argparse.Namespace) -> int:
             from ..core import picture
 
             picture.write_picture(arguments.picture, result.vertices, result.quads)
-    except (InputError, Cancelled, KeyboardInterrupt, Exception) as error:
+        _write(arguments, result, mesh)
+    except OSError as error:  # of a folder of stages: what else is read or written has errors of its own
+        problem = file_places.UnwritableFileError(file_places.name_and_reason(error))
+        _write_failure(arguments, options, problem)
+        raise problem from error
+    except (KeyboardInterrupt, Exception) as error:
         _write_failure(arguments, options, error)
         raise
-    _write(arguments, result, mesh)
     if not arguments.quiet:
         for defect in result.report["defects"]:
             say(f"{what_became_of(defect)} {describe_defect(defect)}")
@@ -112,8 +116,9 @@ def _remesh(
 
 
 def _write(arguments: argparse.Namespace, result: HeldQuads | RemeshResult, mesh: PartRemesh | None) -> None:
-    # The report first: where it cannot be written, no result must be left behind. From here on, a signal that comes
-    # while the files are put in place would leave one of the two; it is held back for these few milliseconds.
+    # Where one of the two cannot be written, neither the result nor a report that says "ok" must be left behind: the
+    # report is put in its place, which hardly fails, when all of it is on the disk and the result in its own. A signal
+    # that comes while files are put in place would leave one of the two; it is held back for these few milliseconds.
     held = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         for number in held:
@@ -124,15 +129,22 @@ def _write(arguments: argparse.Namespace, result: HeldQuads | RemeshResult, mesh
         if arguments.report:
             with file_places.replacing(arguments.report) as file:
                 file.write(report.as_text(result.report).encode())
-        if isinstance(result, HeldQuads):
-            write_held(arguments.output, result)
+                file_places.put_on_disk(file)
+                _write_result(arguments.output, result, mesh)
         else:
-            from .array_run import write_arrays
-
-            write_arrays(arguments.output, result, mesh)
+            _write_result(arguments.output, result, mesh)
     finally:
         for number, handler in held.items():
             signal.signal(number, handler)
+
+
+def _write_result(path: str, result: HeldQuads | RemeshResult, mesh: PartRemesh | None) -> None:
+    if isinstance(result, HeldQuads):
+        write_held(path, result)
+    else:
+        from .array_run import write_arrays
+
+        write_arrays(path, result, mesh)
 
 
 def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error: BaseException) -> None:
@@ -140,7 +152,9 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         return
     if isinstance(error, InputError):
         status = "input_error"
-    elif isinstance(error, (file_places.MeshFileError, OSError)):
+    elif isinstance(error, file_places.UnwritableFileError):
+        status = "unwritable_file"
+    elif isinstance(error, file_places.MeshFileError):
         status = "unreadable_file"
     elif isinstance(error, MemoryError):
         status = "memory_limit"
@@ -148,5 +162,9 @@ def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error:
         status = getattr(error, "code", "cancelled")
     else:
         status = "internal_error"
-    with file_places.replacing(arguments.report) as file:
-        file.write(report.as_text(report.failed(status, error, options, __version__)).encode())
+    try:
+        with file_places.replacing(arguments.report) as file:
+            file.write(report.as_text(report.failed(status, error, options, __version__)).encode())
+    except file_places.UnwritableFileError as problem:
+        if str(problem) != str(error):  # which is said after it, and is what the exit status tells
+            say(str(problem))

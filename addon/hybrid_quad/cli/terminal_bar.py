@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 def terminal_bar(**options: Any) -> tqdm[None] | None:
     """tqdm's bar on the error stream, by tqdm's options; None where that is no terminal, or in Blender, which has no tqdm."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         return None
     try:
         from tqdm import tqdm  # takes longer to load than all else here

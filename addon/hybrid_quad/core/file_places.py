@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import stat
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -14,32 +16,49 @@ class MeshFileError(Exception):
     """A file cannot be read or written as a mesh; the message names it and says why."""
 
 
+class UnwritableFileError(MeshFileError):
+    """A file cannot be written."""
+
+
+def name_and_reason(error: OSError) -> str:
+    """What the system says, with the file as far as it is known."""
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
+
+
 def check_place(path: str | os.PathLike[str]) -> None:
-    """Raises MeshFileError where no file could be put at `path`."""
-    path = Path(path)
-    if not path.parent.is_dir():
-        raise MeshFileError(f"{path}: the folder {path.parent} does not exist")
+    """Raises UnwritableFileError where no file could be put at `path`."""
+    path, folder = Path(path), _place_of(path).parent
+    if not folder.is_dir():
+        raise UnwritableFileError(f"{path}: the folder {folder} does not exist")
     if path.is_dir():
-        raise MeshFileError(f"{path}: is a folder")
+        raise UnwritableFileError(f"{path}: is a folder")
     if path.exists() and not path.is_file():  # a device, say: it must not be replaced by a file
-        raise MeshFileError(f"{path}: is no regular file")
-    if not os.access(path.parent, os.W_OK):
-        raise MeshFileError(f"{path}: the folder {path.parent} cannot be written to")
+        raise UnwritableFileError(f"{path}: is no regular file")
+    if not os.access(folder, os.W_OK):
+        raise UnwritableFileError(f"{path}: the folder {folder} cannot be written to")
 
 
 def check_apart(path: str | os.PathLike[str] | None, others: Iterable[str | os.PathLike[str] | None]) -> None:
-    """Raises MeshFileError where `path`, which is to be written, is one of `others`, which are read or written by the same run."""
+    """Raises UnwritableFileError where `path`, to be written, is one of `others`, which a run reads or writes too."""
     if path is None:
         return
     place = os.path.normcase(os.path.realpath(path))
     if any(place == os.path.normcase(os.path.realpath(other)) for other in others if other):
-        raise MeshFileError(f"{path}: is named twice, and would be written over")
+        raise UnwritableFileError(f"{path}: is named twice, and would be written over")
+
+
+def require_regular(path: str | os.PathLike[str]) -> None:
+    """Raises OSError where `path` is a pipe or a device, from which one might read for ever."""
+    mode = os.stat(path).st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):  # of a folder the system says so itself
+        raise OSError(errno.EINVAL, "is no regular file", os.fspath(path))
 
 
 @contextlib.contextmanager
 def reading(path: str | os.PathLike[str]) -> Iterator[None]:
     """Turns what goes wrong with a file, or its contents, into a MeshFileError that names it."""
     try:
+        require_regular(path)
         yield
     except OSError as error:
         raise MeshFileError(f"{path}: {error.strerror or error}") from error
@@ -49,25 +68,51 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
-    """A file that takes the place of `path` once everything is in it, and vanishes if anything goes wrong before."""
-    path = Path(path)
+    """A file that takes the place of `path` once everything is in it, and vanishes if anything goes wrong before.
+
+    A link stays one: what it leads to is replaced. The permissions of a file that is replaced stay.
+
+    Raises
+    ------
+    UnwritableFileError
+    """
+    place = _place_of(path)
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+        # Not named after the file, whose name may be as long as names can be.
+        handle, name = tempfile.mkstemp(prefix=".hybrid-quad.", suffix=".part", dir=place.parent)
     except OSError as error:
-        raise MeshFileError(f"{path}: {error.strerror or error}") from error
+        raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
     try:
         with os.fdopen(handle, "wb") as file:
             yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(name, 0o666 & ~_umask())
-        os.replace(name, path)
+            put_on_disk(file)
+        os.chmod(name, _permissions(place))
+        os.replace(name, place)
     except BaseException as error:
         with contextlib.suppress(OSError):
             os.unlink(name)
         if isinstance(error, OSError):
-            raise MeshFileError(f"{path}: {error.strerror or error}") from error
+            raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
         raise
+
+
+def put_on_disk(file: BinaryIO) -> None:
+    """Writes out what is still in memory; raises OSError where that cannot be done, as on a full disk."""
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def _place_of(path: str | os.PathLike[str]) -> Path:
+    """Where the file is that a link leads to, or `path` where it is none."""
+    return Path(os.path.realpath(path) if os.path.islink(path) else path)
+
+
+def _permissions(place: Path) -> int:
+    """Those of the file that is there, or else the usual ones."""
+    try:
+        return place.stat().st_mode & 0o777
+    except FileNotFoundError:
+        return 0o666 & ~_umask()
 
 
 def _umask() -> int:

@@ -35,12 +35,20 @@ FacesLike = Polygons | npt.ArrayLike | Sequence[Sequence[int]]
 
 def as_vertices(vertices: npt.ArrayLike) -> FloatArray:
     """`vertices` as a contiguous (n, 3) float64 array."""
-    array = np.ascontiguousarray(vertices, dtype=np.float64)
+    array = as_reals(vertices, "vertices")
     if array.size == 0:
         return array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"vertices must be an (n, 3) array, not one of shape {array.shape}")
     return array
+
+
+def as_reals(values: npt.ArrayLike, name: str) -> FloatArray:
+    """`values` as a contiguous float64 array of any shape; TypeError for complex numbers, which would lose a part."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise TypeError(f"{name} must be real numbers, not {array.dtype}")
+    return np.asarray(array, dtype=np.float64, order="C")
 
 
 def as_polygons(faces: FacesLike) -> Polygons:
@@ -77,6 +85,14 @@ def as_edges(edges: npt.ArrayLike | Iterable[Sequence[int]] | None) -> IntArray:
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"sharp_edges must be a (k, 2) array of vertex pairs, not one of shape {array.shape}")
     return _as_indices(array, "sharp_edges")
+
+
+def require_indices(polygons: Polygons, vertex_count: int) -> None:
+    """Raises InputError ``"index_out_of_range"`` where a polygon has a vertex that does not exist; names all."""
+    outside = (polygons.vertices < 0) | (polygons.vertices >= vertex_count)
+    if outside.any():
+        faces = np.unique(np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[outside])
+        raise InputError("index_out_of_range", "Faces use vertices that do not exist.", "face", faces.tolist())
 
 
 def require_edges(edges: IntArray, polygons: Polygons, vertex_count: int) -> None:

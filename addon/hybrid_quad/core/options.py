@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -191,12 +192,17 @@ _NUMBERS_OR_NONE = ("edge_length", "sharp_angle", "chord_error", "time_limit", "
 
 
 def _require_number(name: str, value: object) -> None:
-    if not (hasattr(value, "__float__") or hasattr(value, "__index__")):
+    is_array = getattr(value, "ndim", 0) > 0
+    if is_array or not (hasattr(value, "__float__") or hasattr(value, "__index__")):
         raise TypeError(f"{name} must be a number, not {value!r}")
 
 
 def _is_integer(value: object) -> bool:
-    return hasattr(value, "__index__") and not isinstance(value, bool)
+    try:
+        operator.index(value)  # type: ignore[arg-type]
+    except TypeError:  # arrays have the method as well
+        return False
+    return not isinstance(value, bool)
 
 
 def _require(condition: bool, message: str) -> None:

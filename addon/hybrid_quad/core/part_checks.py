@@ -13,14 +13,6 @@ from .part_weld import PartResult, rim_of
 from .validation import violations
 
 
-def require_indices(points: FloatArray, polygons: Polygons) -> None:
-    """Raises InputError ``index_out_of_range`` where a face has a vertex that does not exist."""
-    outside = (polygons.vertices < 0) | (polygons.vertices >= len(points))
-    if outside.any():
-        faces = np.unique(np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[outside])
-        raise InputError("index_out_of_range", "Faces have vertices that do not exist.", "face", faces.tolist())
-
-
 def require_welded(points: FloatArray, polygons: Polygons, even: EvenPart) -> None:
     """Raises InputError ``unwelded_border`` where vertices in one place would be merged.
 

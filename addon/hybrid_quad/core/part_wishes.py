@@ -85,7 +85,8 @@ class PartWishes:
             if stroke.kind == "direction":
                 inside.append(stroke)
                 continue
-            nearest = nearest_on_surface(stroke.points, self._points, triangles).triangles
+            with np.errstate(over="ignore"):  # of a line that is far off any place will do
+                nearest = nearest_on_surface(stroke.points, self._points, triangles).triangles
             is_in = self._part[owner[nearest]]
             if is_in.all():
                 inside.append(stroke)

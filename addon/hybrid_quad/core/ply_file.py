@@ -6,6 +6,8 @@ faces with colours or texture coordinates come out wrong, and which Blender's Py
 
 from __future__ import annotations
 
+import codecs
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .mesh_arrays import FloatArray
+from .number_words import coordinates, whole_number
 
 _TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -66,13 +69,16 @@ def read_ply(data: bytes) -> tuple[FloatArray, IntRow, IntRow]:
     Raises
     ------
     ValueError
-        If it is no PLY file, or ends too early.
+        If it is no PLY file, ends too early, has more than one element of vertices, or a word that is no number where
+        one belongs.
     """
     order, elements, body = _header(data)
     rows = _BinaryRows(body, order) if order else _TextRows(body)
     vertices: FloatArray = np.zeros((0, 3))
-    sizes, corners = np.zeros(0, np.int64), np.zeros(0, np.int64)
-    names = {element.name for element in elements}
+    faces: Columns = []
+    names = [element.name for element in elements]
+    if names.count("vertex") > 1:
+        raise ValueError("the PLY file has more than one element vertex: which of them its faces mean is unknown")
     strips = "" if "face" in names else "tristrips"
     for element in elements:
         if element.name == "vertex":
@@ -80,13 +86,19 @@ def read_ply(data: bytes) -> tuple[FloatArray, IntRow, IntRow]:
             columns = rows.take(element, places)
             vertices = np.stack([np.asarray(values, np.float64) for _, values in columns], axis=1)
         elif element.name == "face":
-            ((sizes, corners),) = rows.take(element, [_place_of(element, _CORNERS)])
+            faces += rows.take(element, [_place_of(element, _CORNERS)])
         elif element.name == strips:
             triangles = _triangles_of_strips(*rows.take(element, [_place_of(element, _CORNERS)])[0])
-            sizes, corners = np.full(len(triangles), 3), triangles.reshape(-1)
+            faces.append((np.full(len(triangles), 3), triangles.reshape(-1)))
         else:
             rows.take(element, [])
+    sizes, corners = (_joined(parts) for parts in zip(*(faces or [_NOTHING]), strict=True))
     return vertices, sizes, corners
+
+
+def _joined(parts: tuple[Any, ...]) -> Any:
+    # As Python's numbers, as their types may have none in common that holds them all.
+    return parts[0] if len(parts) == 1 else np.concatenate([part.astype(object) for part in parts])
 
 
 def _triangles_of_strips(lengths: IntRow, vertices: IntRow) -> IntRow:
@@ -116,9 +128,11 @@ def _place_of(element: _Element, names: Sequence[str]) -> int:
 
 def _header(data: bytes) -> tuple[str, list[_Element], bytes]:
     """The byte order (empty: text), the elements, and what follows."""
+    data = data.removeprefix(codecs.BOM_UTF8)
+    line_end = b"\r" if re.match(rb"ply[ \t]*\r(?!\n)", data) else b"\n"
     order, elements, at = None, list[_Element](), 0
     while True:
-        end = data.find(b"\n", at)
+        end = data.find(line_end, at)
         words = data[at : end if end >= 0 else len(data)].decode("ascii", "replace").split()
         if at == 0 and words[:1] != ["ply"]:
             raise ValueError("no PLY file")
@@ -268,18 +282,18 @@ class _TextRows:
         if not any(each.count for each in element.properties):
             width = len(element.properties)
             words = self._next(element, width * element.times)
-            return [(_NOTHING[0], _numbers(words[place::width], element.properties[place])) for place in wanted]
+            return [(_NOTHING[0], coordinates(words[place::width])) for place in wanted]
         found: list[list[bytes]] = [[] for _ in wanted]
         sizes: list[list[int]] = [[] for _ in wanted]
-        for _ in range(element.times):
+        for row in range(element.times):
             for place, each in enumerate(element.properties):
-                size = _length(self._next(element, 1)[0]) if each.count else 1
+                size = _length(self._next(element, 1)[0], element, row) if each.count else 1
                 words = self._next(element, size)
                 if place in wanted:
                     sizes[wanted.index(place)].append(size)
                     found[wanted.index(place)] += words
         return [
-            (np.array(size, np.int64), _numbers(words, element.properties[place]))
+            (np.array(size, np.int64), _numbers(words, size, element, element.properties[place]))
             for place, size, words in zip(wanted, sizes, found, strict=True)
         ]
 
@@ -303,15 +317,18 @@ def _column(table: Any, place: int) -> tuple[IntRow, Any]:
     return np.full(len(values), values.shape[1], np.int64), values.reshape(-1)
 
 
-def _numbers(words: list[bytes], kind: _Property) -> Any:
+def _numbers(words: list[bytes], sizes: list[int], element: _Element, kind: _Property) -> Any:
     if kind.count and kind.value[0] != "f":
-        return np.array([int(word) for word in words], object)
+        rows = np.repeat(np.arange(len(sizes)), sizes).tolist()
+        what = "a corner of {} {}, counted from 0,"
+        numbers = [whole_number(word, what, element.name, row) for word, row in zip(words, rows, strict=True)]
+        return np.array(numbers, object)
     # Coordinates keep all digits that the file has, whatever type it names.
-    return np.array([float(word) for word in words])
+    return coordinates(words)
 
 
-def _length(word: bytes) -> int:
-    size = int(word)
+def _length(word: bytes, element: _Element, row: int) -> int:
+    size = whole_number(word, "the length of a list of {} {}, counted from 0,", element.name, row)
     if size < 0:
         raise ValueError(f"a list of the PLY file has {size} values")
     return size

@@ -22,6 +22,7 @@ from .mesh_arrays import (
     Polygons,
     as_edges,
     as_polygons,
+    as_reals,
     as_vertices,
     require_edges,
     surface_area,
@@ -360,7 +361,7 @@ def _with_directions(
     if not length > 0:  # no surface: the run itself says so
         return guides
     drawn = guides_from_strokes(points, polygons, directions, RADIUS_IN_EDGES * length if radius is None else radius)
-    given = None if guides is None else np.asarray(guides, np.float64)
+    given = None if guides is None else as_reals(guides, "guides")
     if given is not None and given.shape != drawn.shape and given.shape == (len(polygons.sizes), 3):
         given = guides_of_vertices(given, polygons, len(points))
     return stronger_of(given, drawn) if given is None or given.shape == drawn.shape else given
@@ -384,15 +385,19 @@ def _symmetry_center(points: FloatArray, options: RemeshOptions) -> FloatArray |
 def _require_enough_length(points: FloatArray, polygons: Polygons, options: RemeshOptions, density: FloatArray) -> None:
     if options.edge_length is None or options.chord_error is not None:
         return
-    expected = surface_area(points, polygons) / options.edge_length**2
+    expected = surface_area(points, polygons) / options.edge_length / options.edge_length  # its square may be no number
     if len(density):
         expected *= float((np.clip(density, *DENSITY_BOUNDS) ** 2).mean())
     if expected > MOST_QUADS:
         raise InputError(
             "too_many_quads",
-            f"Quads of edge length {options.edge_length:g} would be about {expected:.2g} on this surface, "
+            f"Quads of edge length {options.edge_length:g} would be {_about(expected)} on this surface, "
             f"more than {MOST_QUADS}.",
         )
+
+
+def _about(number: float) -> str:
+    return f"about {number:.2g}" if math.isfinite(number) else "beyond all counting"
 
 
 def _snapshot_receiver(

@@ -12,9 +12,19 @@ import numpy.typing as npt
 from .curve_counts import CurveCount, as_curve_counts
 from .edge_borders import BoolArray
 from .errors import InputError
-from .mesh_arrays import FacesLike, FloatArray, IntArray, Polygons, as_edges, as_polygons, as_vertices, require_edges
+from .mesh_arrays import (
+    FacesLike,
+    FloatArray,
+    IntArray,
+    Polygons,
+    as_edges,
+    as_polygons,
+    as_vertices,
+    require_edges,
+    require_indices,
+)
 from .options import ODD_BORDERS, RemeshOptions
-from .part_checks import require_indices, require_sound, require_welded
+from .part_checks import require_sound, require_welded
 from .part_parity import EvenPart, even_part
 from .part_sheet import Indices, border_length, sheet_of
 from .part_weld import PartResult, welded
@@ -138,7 +148,7 @@ def remesh_part(
     asked = RemeshOptions(**options, edge_length=edge_length)
     is_free = quads is None and edge_length is None and asked.chord_error is None
     choice = PartChoice(as_part(part, len(polygons.sizes)), odd_border, is_free)
-    require_indices(points, polygons)
+    require_indices(polygons, len(points))
     result = remesh_part_with_options(
         points,
         polygons,
@@ -184,7 +194,7 @@ def remesh_part_with_options(
     if odd_border not in ODD_BORDERS:
         raise ValueError(f"odd_border must be one of {', '.join(ODD_BORDERS)}, not {odd_border!r}")
     chosen = as_part(part, len(polygons.sizes))
-    require_indices(points, polygons)
+    require_indices(polygons, len(points))
     even = even_part(points, polygons, chosen, odd_border)
     require_welded(points, polygons, even)
     sheet_points = _nudged(points, even)

@@ -41,8 +41,9 @@ def failed(status: str, error: BaseException, options: RemeshOptions | None, ver
 
     Parameters
     ----------
-    status : {"input_error", "internal_error", "cancelled", "time_limit", "memory_limit", "unreadable_file", "wrong_usage"}
-        Whose fault it is.
+    status : str
+        ``"input_error"``, ``"internal_error"``, ``"cancelled"``, ``"time_limit"``, ``"memory_limit"``,
+        ``"unreadable_file"``, ``"unwritable_file"`` or ``"wrong_usage"``: whose fault it is.
     error : BaseException
         What stopped the run; its code and elements are kept where it has them.
     """

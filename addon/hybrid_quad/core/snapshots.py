@@ -67,10 +67,13 @@ class SnapshotFolder:
         self._count = 0
 
     def write(self, snapshot: Snapshot) -> Path:
-        """Writes one file and returns its path."""
+        """Writes one file and returns its path; OSError names it."""
         name = re.sub(r"[^A-Za-z0-9_-]+", "_", snapshot.stage) or "stage"
         path = self._folder / f"{self._count:02d}_{name}.vtu"
-        _as_meshio(snapshot).write(path)
+        try:
+            _as_meshio(snapshot).write(path)
+        except OSError as error:  # of a full disk the system does not say where it is
+            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         self._count += 1
         return path
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import codecs
+import re
+
 import numpy as np
 import numpy.typing as npt
 
 from .mesh_arrays import FloatArray
+from .number_words import coordinates
 
 _HEAD = 84  # bytes before the first triangle: any text, and how many there are
 _TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+# What the lines that begin and end a solid call it, which may be anything: "my vertex model".
+_NAME = re.compile(rb"^[ \t]*(?:end)?solid\b(?:(?!facet\s+normal)[^\n])*", re.MULTILINE)
 
 
 def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
@@ -26,13 +32,13 @@ def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
     """
     count = int(np.frombuffer(data, "<u4", 1, _HEAD - 4)[0]) if len(data) >= _HEAD else -1
     end = _HEAD + count * _TRIANGLE.itemsize
-    # Binary files may begin with the word "solid" as texts do, and may have something behind their triangles.
-    is_text = data.lstrip()[:5].lower() == b"solid"
-    if count >= 0 and (end == len(data) or (end < len(data) and not is_text)):
+    # Binary files may begin with the word "solid" as texts do, and may have something behind their triangles. In a text
+    # letters are in the place of the count, which are more triangles than it could hold; and zeros are in none.
+    if count >= 0 and end <= len(data):
         with np.errstate(invalid="ignore"):  # bytes may be numbers that signal
             points = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"].reshape(-1, 3).astype(np.float64)
-    elif is_text:
-        points = _points_of_text(data)
+    elif data.removeprefix(codecs.BOM_UTF8).lstrip()[:5].lower() == b"solid" and b"\0" not in data[:_HEAD]:
+        points = _points_of_text(data.removeprefix(codecs.BOM_UTF8))
     else:
         raise ValueError("no STL file, or one that ends too early")
     if len(points) % 3:
@@ -45,8 +51,8 @@ def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
 
 
 def _points_of_text(data: bytes) -> FloatArray:
-    words = data.lower().split()
+    words = _NAME.sub(b"", data.lower().replace(b"\r", b"\n")).split()
     begins = [place for place, word in enumerate(words) if word == b"vertex"]
     if begins and begins[-1] + 3 >= len(words):
         raise ValueError("the STL file ends within a triangle")
-    return np.array([[float(word) for word in words[at + 1 : at + 4]] for at in begins]).reshape(-1, 3)
+    return coordinates([word for at in begins for word in words[at + 1 : at + 4]], 3).reshape(-1, 3)

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .edge_borders import polygon_normals
-from .mesh_arrays import FacesLike, FloatArray, Polygons, as_polygons, as_vertices, unit_vectors
+from .errors import InputError
+from .mesh_arrays import FacesLike, FloatArray, Polygons, as_polygons, as_vertices, require_indices, unit_vectors
 from .options import STROKE_KINDS
 from .surface_points import fan_triangles, nearest_on_surface, pairs_within
 
@@ -21,6 +22,7 @@ _SAMPLES_PER_RADIUS = 4
 # What it does within less is not for the quads to follow.
 _BLUR = 0.14
 _MOST_SAMPLES = 4000
+_FARTHEST = 1e9  # of the surface's size: from farther away all places of it are as near
 # Cosine between normals below which a place is on another side of the surface than the stroke: a thin sheet's back.
 _SAME_SIDE = 0.3
 
@@ -70,12 +72,22 @@ def guides_from_strokes(
     -------
     (n, 3) float64
         Tangents of the surface as long as the guide is strong; zero where none is.
+
+    Raises
+    ------
+    InputError
+        If a face has a vertex that is not there or not finite (``index_out_of_range``, ``non_finite_vertex``), or a
+        stroke is more than 1e9 times as far from the surface as this is large (``stroke_too_far``).
+    ValueError, TypeError
+        If `radius` or a stroke makes no sense, or an array has the wrong shape or type.
     """
     if not (math.isfinite(radius) and radius > 0):
         raise ValueError(f"radius must be > 0, not {radius!r}")
-    points, polygons = as_vertices(vertices), as_polygons(faces)
+    polygons = as_polygons(faces)
+    points = _with_faces(as_vertices(vertices), polygons)
     triangles = fan_triangles(polygons)
     lines = [_as_stroke(stroke) for stroke in strokes]
+    _require_near(lines, points)
     segments = np.concatenate([np.stack([s.points[:-1], s.points[1:]], axis=1) for s in lines] or [np.zeros((0, 2, 3))])
     strengths = np.concatenate([np.full(max(0, len(s.points) - 1), s.strength) for s in lines] or [np.zeros(0)])
     normals = vertex_normals(points, polygons)
@@ -241,6 +253,43 @@ def _as_stroke(stroke: Stroke | npt.ArrayLike) -> Stroke:
     if not 0 <= strength <= 1:
         raise ValueError(f"a stroke's strength must be between 0 and 1, not {strength!r}")
     return Stroke(points, float(strength), kind)
+
+
+def _with_faces(points: FloatArray, polygons: Polygons) -> FloatArray:
+    """Vertices; those without a face, on which no stroke acts, in the place of one that has some: they may be anywhere.
+
+    Raises
+    ------
+    InputError
+        If a face has a vertex that is not there, or whose coordinates are not finite.
+    """
+    require_indices(polygons, len(points))
+    used = np.unique(polygons.vertices)
+    bad = used[~np.isfinite(points[used]).all(axis=1)]
+    if len(bad):
+        raise InputError(
+            "non_finite_vertex", "Vertices have coordinates that are no finite numbers.", "vertex", bad.tolist()
+        )
+    if not len(used):
+        return np.zeros_like(points)
+    placed = np.broadcast_to(points[used[0]], points.shape).copy()
+    placed[used] = points[used]
+    return placed
+
+
+def _require_near(strokes: list[Stroke], vertices: FloatArray) -> None:
+    """Raises InputError where a stroke is so far off that no digits are left to tell which vertex is nearest."""
+    if not len(vertices):
+        return
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    size = float((high - low).max())
+    for stroke in strokes:
+        away = float(np.maximum(low - stroke.points, stroke.points - high).max(initial=0.0))
+        if away / _FARTHEST > size:
+            raise InputError(
+                "stroke_too_far",
+                f"A stroke is more than {_FARTHEST:g} times as far from the surface as this is large.",
+            )
 
 
 def _without_points(segments: FloatArray, strengths: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import native
-from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_vertices
+from .errors import InputError
+from .mesh_arrays import FacesLike, FloatArray, IntArray, as_edges, as_polygons, as_reals, as_vertices
 from .mesh_objects import MeshLike, vertices_and_faces
 from .options import usable_threads
 
@@ -82,8 +83,8 @@ def subdivide(
     Raises
     ------
     InputError
-        If a face has fewer than three corners or a vertex that is not there (``malformed_faces``, ``index_out_of_range``), or
-        a crease is no edge of a face (``unknown_edge``).
+        If there are no faces (``empty_mesh``), a face has fewer than three corners or a vertex that is not there
+        (``malformed_faces``, ``index_out_of_range``), or a crease is no edge of a face (``unknown_edge``).
     InternalError
         If OpenSubdiv refuses the mesh.
     ValueError, TypeError
@@ -93,6 +94,8 @@ def subdivide(
         raise ValueError(f"levels must be 1 to {MOST_LEVELS}")
     positions, corners = vertices_and_faces(vertices, faces)
     points, polygons, creases = as_vertices(positions), as_polygons(corners), as_edges(crease_edges)
+    if not len(polygons.sizes):
+        raise InputError("empty_mesh", "The mesh has no faces.")
     sharp = np.zeros(0, np.int32) if sharp_vertices is None else np.asarray(sharp_vertices, np.int32)
     if sharp.ndim != 1:
         raise ValueError("sharp_vertices must be one-dimensional")
@@ -134,10 +137,14 @@ def surface_distances(
     ------
     InputError
         If the faces are no surface.
+    ValueError, TypeError
+        If a point is not finite, or an array has the wrong shape or type.
     """
-    polygons = as_polygons(faces)
+    polygons, places = as_polygons(faces), as_vertices(points)
+    if not (finite := np.isfinite(places).all(axis=1)).all():
+        raise ValueError(f"points must be finite, and row {int(finite.argmin())} is not")
     found: FloatArray = native.load().distances(
-        as_vertices(points),
+        places,
         as_vertices(vertices),
         polygons.sizes,
         polygons.vertices,
@@ -147,7 +154,7 @@ def surface_distances(
 
 
 def _one_each(value: npt.ArrayLike, count: int, name: str) -> FloatArray:
-    values = np.asarray(value, np.float64)
+    values = as_reals(value, name)
     if values.ndim and values.shape != (count,):
         raise ValueError(f"{name} must be one number, or {count}")
     if not (values >= 0).all():

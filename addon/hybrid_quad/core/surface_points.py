@@ -14,6 +14,7 @@ from .mesh_arrays import FloatArray, IntArray, Polygons
 _POINTS = 2000
 _PAIRS = 1_000_000
 _LEAF = 8  # triangles of the smallest boxes
+_MOST_CELLS = 1 << 20  # along each axis: their number is a whole one of 64 bits
 _BEAM = 6  # boxes that are looked into for a first bound
 # How much the squared distance to a box's middle counts beside the one to the box: little, so that it only tells apart boxes that
 # hold a point, or are about as far from it. Any value gives a true bound; it says how tight that is.
@@ -213,7 +214,7 @@ def pairs_within(
 
 
 class PointGrid:
-    """Points sorted into cells as large as a radius, so that those within it of other points are found quickly.
+    """Points sorted into cells no smaller than a radius, so that those within it of other points are found quickly.
 
     Parameters
     ----------
@@ -225,7 +226,8 @@ class PointGrid:
     def __init__(self, others: FloatArray, radius: float) -> None:
         self._others, self._radius = others, radius
         self._low = others.min(axis=0)
-        cells = np.floor((others - self._low) / radius).astype(np.int64)
+        self._cell = max(radius, float(np.ptp(others, axis=0).max()) / _MOST_CELLS)
+        cells = np.floor((others - self._low) / self._cell).astype(np.int64)
         self._size = cells.max(axis=0) + 3  # a border of empty cells all around
         keys = _cell_keys(cells, self._size)
         self._order = np.argsort(keys, kind="stable")
@@ -233,7 +235,7 @@ class PointGrid:
 
     def pairs(self, points: FloatArray) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray]]:
         """All pairs of one of `points` and a point of the grid closer than the radius, as :func:`pairs_within` gives them."""
-        own = np.floor((points - self._low) / self._radius).astype(np.int64)
+        own = np.floor((points - self._low) / self._cell).astype(np.int64)
         for shift in np.ndindex(3, 3):
             # Three cells in a row along z are one range of keys.
             cell = own + np.array([shift[0] - 1, shift[1] - 1, 0])

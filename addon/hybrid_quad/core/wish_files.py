@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +62,8 @@ def read_counts(path: str | os.PathLike[str]) -> list[tuple[list[int], int]]:
 def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
     """(k, 2) vertices of the edges that an .obj file has as lines (``l``), as its mesh counts them; others have none.
 
+    Lines that are none of vertices are left out, as those who read the mesh leave out all lines.
+
     Raises
     ------
     MeshFileError
@@ -66,15 +71,13 @@ def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
     path = Path(path)
     pairs: list[tuple[int, int]] = []
     latest = 0
-    for line in read_text(path).splitlines() if path.suffix.lower() == ".obj" else ():
-        latest += line.startswith(("v ", "v\t"))
-        if line.startswith(("l ", "l\t")):
-            try:
-                indices = [int(token.partition("/")[0]) for token in line.split()[1:]]
-            except ValueError:
-                raise MeshFileError(f"{path}: {line.strip()!r} is no line of vertices") from None
-            places = [index - 1 if index >= 0 else latest + index for index in indices]
-            pairs += itertools.pairwise(places)
+    for _, tokens in _rows_of_obj(read_text(path)) if path.suffix.lower() == ".obj" else ():
+        if tokens[:1] == ["v"]:
+            latest += 1
+        elif tokens[:1] == ["l"]:
+            with contextlib.suppress(ValueError):
+                indices = [int(token.partition("/")[0]) for token in tokens[1:]]
+                pairs += itertools.pairwise(index - 1 if index >= 0 else latest + index for index in indices)
     return clipped_to_int32([place for pair in pairs for place in pair]).reshape(-1, 2)
 
 
@@ -115,7 +118,7 @@ def read_polylines(path: str | os.PathLike[str]) -> list[tuple[str, FloatArray]]
     """
     path = Path(path)
     text = read_text(path)
-    rows = [(number, line.partition("#")[0].split()) for number, line in enumerate(text.splitlines(), 1)]
+    rows = list(_rows_of_obj(text))
     read = _polylines_of_obj if any(tokens[:1] == ["l"] for _, tokens in rows) else _polylines_of_text
     try:
         lines = read(rows)
@@ -133,7 +136,15 @@ class _BadRow(Exception):
         self.number = number
 
 
-_Rows = list[tuple[int, list[str]]]
+_Rows = Iterable[tuple[int, list[str]]]
+
+
+def _rows_of_obj(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Number, from 1, and words of each line but its comment; a backslash at a line's end joins the next one to it."""
+    number = 1
+    for line in re.split(r"(?<!\\)\n", text):
+        yield number, line.replace("\\\n", " ").partition("#")[0].split()
+        number += 1 + line.count("\n")
 
 
 def _polylines_of_obj(rows: _Rows) -> list[tuple[str, FloatArray]]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import InputError
-from .mesh_arrays import FloatArray
+from .mesh_arrays import FloatArray, as_reals
 
 DENSITY_BOUNDS = (0.1, 10.0)  # what lies beyond counts as these
 
@@ -54,7 +54,7 @@ def _by_element(
     none = np.zeros((0, *tail))
     if values is None:
         return none, none
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = as_reals(values, name)
     if array.ndim != 1 + len(tail) or array.shape[1:] != tail or len(array) not in (vertex_count, face_count):
         asked = ", ".join(str(size) for size in tail)
         counts = f"{vertex_count} vertices" + (f" or {face_count} faces" if face_count != vertex_count else "")
