@@ -103,7 +103,7 @@ def test_what_makes_no_sense_is_refused(stroke, radius):
         hybrid_quad.guides_from_strokes(*grid(4, 4), [stroke], radius=radius)
 
 
-@pytest.mark.parametrize("at", [1e12, 1e300])
+@pytest.mark.parametrize("at", [1e18, 1e300])
 def test_lines_so_far_off_that_all_is_as_near_are_refused(at):
     with pytest.raises(hybrid_quad.InputError) as caught:
         guides_from_strokes(*grid(4, 4), [[(0, 0, 0), (1, 0, 0)], [(at, 0, 0), (0, at, 0)]], radius=1.0)

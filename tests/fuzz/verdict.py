@@ -22,6 +22,7 @@ NO_ELEMENTS = {
     "symmetry_side_empty",
     "symmetry_plane_missed",
     "symmetry_edge_in_two_planes",
+    "stroke_too_far",
 }
 BAD = ("invalid", "internal_error", "exception", "bad_refusal", "timeout", "crash")
 

@@ -439,5 +439,32 @@ TEST(MeshBuilder, RefusesCoordinatesThatOverflowOrHaveNoDigits) {
   EXPECT_EQ(refusal(soup), "coordinates_too_coarse");
 }
 
+/// Each is a reason to refuse the mesh, and none hides what else is wrong with it.
+TEST(MeshBuilder, CheckLooksAtTheFacesBesideThoseThatItRefuses) {
+  PolygonSoup soup = test::soup_of(test::icosphere(2));
+  const int faces = static_cast<int>(soup.face_sizes.size());
+  flip_face(soup, 100);
+  add_face(soup, {soup.face_vertices[60], soup.face_vertices[61], soup.face_vertices[62]});
+  add_face(soup, {0, 1, 100000});
+  const int nan = static_cast<int>(soup.positions.size());
+  soup.positions.push_back(Vector3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+  add_face(soup, {0, 1, nan});
+  soup.positions.push_back(Vector3(1e30, 0, 0));
+  add_face(soup, {0, 1, nan + 1});
+  const std::vector<Defect> defects = check_mesh(soup);
+  const auto elements = [&](const std::string& code) {
+    const auto found = std::find_if(defects.begin(), defects.end(), [&](const Defect& d) { return d.code == code; });
+    return found == defects.end() ? std::vector<int>{} : found->elements;
+  };
+  EXPECT_EQ(elements("flipped_face"), std::vector<int>{100});
+  EXPECT_EQ(elements("duplicate_face").size(), 1u);
+  EXPECT_EQ(elements("index_out_of_range"), std::vector<int>{faces + 1});
+  EXPECT_EQ(elements("non_finite_vertex"), std::vector<int>{nan});
+  EXPECT_EQ(elements("coordinate_outlier"), std::vector<int>{nan + 1});
+  EXPECT_TRUE(elements("isolated_vertex").empty());
+  EXPECT_EQ(defects.back().code, "index_out_of_range") << "what a run is refused for";
+  EXPECT_EQ(refusal(soup), "index_out_of_range");
+}
+
 }  // namespace
 }  // namespace hybrid_quad

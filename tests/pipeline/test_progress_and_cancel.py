@@ -130,7 +130,6 @@ def test_twenty_requests_at_random_moments_are_answered_within_a_second(dirty_mo
     assert max(waits) < 1.0
 
 
-@pytest.mark.xfail(reason="features_with_room() asks nobody while it compares thousands of rough lines with each other")
 def test_a_request_to_stop_while_lines_of_a_rough_part_give_way_is_answered_within_a_second(cad_part):
     is_heeded, wait = answer(roughened(*cad_part, 0.004), 0.3, quads=40000)
     assert is_heeded and wait < 1.0

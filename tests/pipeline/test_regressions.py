@@ -46,14 +46,6 @@ def test_guides_and_counts_give_way_where_they_leave_flawed_quads():
     assert any("marked edges or guides gave way" in warning for warning in report["warnings"])
 
 
-def test_a_part_that_no_quads_follow_keeps_its_triangles():
-    case = load_case(FOLDER / "rows_of_needles")
-    report = hybrid_quad.remesh(case.vertices, case.faces, **arguments_of(case)).report
-    assert report["flawed_quads"] == 0
-    assert 0 < report["repairs"]["split_triangles"] < len(case.faces)
-    assert report["quads"] < 2 * case.options["quads"]
-
-
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_surfaces_with_random_wishes(seed):
     verdict = verdict_of(make_case(seed), 60.0)

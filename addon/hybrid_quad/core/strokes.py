@@ -22,7 +22,7 @@ _SAMPLES_PER_RADIUS = 4
 # What it does within less is not for the quads to follow.
 _BLUR = 0.14
 _MOST_SAMPLES = 4000
-_FARTHEST = 1e9  # of the surface's size: from farther away all places of it are as near
+_FARTHEST = 1e15  # of the surface's size: from farther away all places of it are as near
 # Cosine between normals below which a place is on another side of the surface than the stroke: a thin sheet's back.
 _SAME_SIDE = 0.3
 
@@ -77,7 +77,7 @@ def guides_from_strokes(
     ------
     InputError
         If a face has a vertex that is not there or not finite (``index_out_of_range``, ``non_finite_vertex``), or a
-        stroke is more than 1e9 times as far from the surface as this is large (``stroke_too_far``).
+        stroke is more than 1e15 times as far from the surface as this is large (``stroke_too_far``).
     ValueError, TypeError
         If `radius` or a stroke makes no sense, or an array has the wrong shape or type.
     """

@@ -34,7 +34,8 @@ struct BuiltMesh {
   std::vector<Defect> defects;    ///< what was found, and repaired, on the way
 };
 
-/// Finds defects without changing anything, and oddities_of() what can be remeshed.
+/// Finds defects without changing anything, and oddities_of() what can be remeshed. Where faces or their vertices are a reason to refuse the
+/// mesh, what is wrong with the others is found too; what a run is refused for comes last.
 std::vector<Defect> check_mesh(const PolygonSoup& soup);
 
 /// Triangulates polygons (ear clipping in their best plane), drops what has no area, welds exact coincidences where that closes cracks,

@@ -1,6 +1,5 @@
 #include "hybrid_quad/mesh/topology.h"
 
-#include <numeric>
 #include <vector>
 
 namespace hybrid_quad {
@@ -15,19 +14,21 @@ struct Gluing {
   int next(int side) const { return side % width == width - 1 ? side - (width - 1) : side + 1; }
 
   int pieces() const {
-    std::vector<int> parent(opposite.size() / width);
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    int count = static_cast<int>(parent.size());
-    for (int side = 0; side < static_cast<int>(opposite.size()); ++side) {
-      if (opposite[side] < 0) continue;
-      const int a = root(side / width), b = root(opposite[side] / width);
-      if (a == b) continue;
-      parent[a] = b;
-      --count;
+    std::vector<char> is_seen(opposite.size() / width, 0);
+    std::vector<int> faces;  // of the pieces found so far
+    faces.reserve(is_seen.size());
+    int count = 0;
+    for (int seed = 0; seed < static_cast<int>(is_seen.size()); ++seed) {
+      if (is_seen[seed]) continue;
+      ++count;
+      is_seen[seed] = 1;
+      faces.push_back(seed);
+      for (std::size_t i = faces.size() - 1; i < faces.size(); ++i)
+        for (int side = width * faces[i]; side < width * (faces[i] + 1); ++side) {
+          if (opposite[side] < 0 || is_seen[opposite[side] / width]) continue;
+          is_seen[opposite[side] / width] = 1;
+          faces.push_back(opposite[side] / width);
+        }
     }
     return count;
   }

@@ -39,7 +39,7 @@ FilledPatch fill_patch(const WorkingSurface& surface, const FrameField& frames, 
     out.combinatorial = true;
     out.quads = combinatorial_fill(patch, context);
     if (const auto violations = structural_violations_of(out.quads, patch); !violations.empty())
-      throw InternalError("combinatorial fill", violations.front());
+      throw InternalError("singular patches", violations.front());
   }
   return out;
 }

@@ -78,7 +78,8 @@ std::vector<std::string> violations_of(const WorkingSurface& surface, const Tria
   std::vector<std::string> found = violations_of(surface.features, surface.mesh);
   if (!found.empty()) return found;
   const TriangleMesh& m = surface.mesh;
-  if (topology_of(m) != topology_of(input)) found.push_back("the topology changed");
+  if (m.euler_characteristic() != input.euler_characteristic() || border_loops_of(m) != border_loops_of(input))
+    found.push_back("the topology changed");
   if (static_cast<int>(surface.input_vertex.size()) != m.vertex_count()) found.push_back("input_vertex has a wrong size");
   if (static_cast<int>(surface.near_face.size()) != m.vertex_count()) found.push_back("near_face has a wrong size");
   if (static_cast<int>(surface.target_length.size()) != m.face_count()) found.push_back("target_length has a wrong size");
