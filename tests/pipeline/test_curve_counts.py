@@ -69,6 +69,34 @@ def test_numbers_that_make_no_sense_are_told_as_they_were_given():
         hybrid_quad.remesh(vertices, faces, curve_counts=path)
 
 
+def test_numbers_that_would_take_endlessly_short_edges_are_reported_as_missed():
+    """Two more vertices on an edge of a box, near each other: between them fifty quads are asked for."""
+    vertices, faces = surfaces.box(4)
+    a, b = _box_edge(vertices, 0)[:2]
+    on_edge = vertices[a] + np.array([[0.5], [0.5 + 1e-4]]) * (vertices[b] - vertices[a])
+    c, d = len(vertices), len(vertices) + 1
+    split = []
+    for face in faces.tolist():
+        corner = next((i for i in range(3) if {face[i], face[(i + 1) % 3]} == {a, b}), None)
+        if corner is None:
+            split.append(face)
+            continue
+        first, second, apex = face[corner], face[(corner + 1) % 3], face[(corner + 2) % 3]
+        line = [first, c, d, second] if first == a else [first, d, c, second]
+        split += [[line[i], line[i + 1], apex] for i in range(3)]
+    result = hybrid_quad.remesh(np.vstack([vertices, on_edge]), split, quads=300, curve_counts=[([c, d], 50)])
+    assert_sound(result, np.array(split))
+    assert result.report["curve_counts"][0]["got"] < 50
+    assert any("curve_counts" in warning for warning in result.report["warnings"])
+
+
+def test_more_quads_along_curves_than_there_may_be_are_refused():
+    vertices, faces = surfaces.box(4)
+    with pytest.raises(hybrid_quad.InputError) as caught:
+        hybrid_quad.remesh(vertices, faces, curve_counts=[(_box_edge(vertices, 0), 10**9)])
+    assert caught.value.code == "wrong_count"
+
+
 def test_errors_name_the_elements():
     vertices, faces = surfaces.box(4)
     path = _box_edge(vertices, 0)

@@ -80,14 +80,19 @@ std::vector<double> stretched(const ComponentPlan& plan, const Stretch& stretch)
 }
 
 /// Lets curves that are to get more quads than fit have shorter ones. Longer ones need no finer triangles: the frames
-/// see to that.
+/// see to that. What would take quads a thousandth as long as usual is not asked for: the report tells that it is missed.
 void shorten_for_counts(ComponentPlan& plan) {
+  constexpr double kLeast = 1e-3;
   bool any = false;
-  for (const FeatureCurve& curve : plan.features.curves) {
+  for (FeatureCurve& curve : plan.features.curves) {
     if (curve.asked_count <= 0) continue;
     double length = 0;
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
       length += (plan.mesh.position(curve.vertices[i + 1]) - plan.mesh.position(curve.vertices[i])).norm();
+    if (length < kLeast * plan.length * curve.asked_count) {
+      curve.asked_count = 0;
+      continue;
+    }
     for (const int v : curve.vertices) plan.target[v] = std::min(plan.target[v], length / curve.asked_count);
     any = true;
   }
