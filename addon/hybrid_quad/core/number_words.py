@@ -13,7 +13,7 @@ _NAN = re.compile(r"[+-]?nan\(\w*\)", re.IGNORECASE | re.ASCII)  # as C librarie
 _SHOWN = 40
 
 
-def coordinates(words: Sequence[str] | Sequence[bytes], per_vertex: int = 1) -> FloatArray:
+def coordinates(words: Sequence[str | bytes], per_vertex: int = 1) -> FloatArray:
     """(k,) the numbers that `words` are, of which each vertex has `per_vertex`.
 
     Raises

@@ -272,7 +272,7 @@ def _with_faces(points: FloatArray, polygons: Polygons) -> FloatArray:
         )
     if not len(used):
         return np.zeros_like(points)
-    placed = np.broadcast_to(points[used[0]], points.shape).copy()
+    placed: FloatArray = np.broadcast_to(points[used[0]], points.shape).copy()
     placed[used] = points[used]
     return placed
 
