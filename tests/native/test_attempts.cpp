@@ -7,7 +7,6 @@
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/mesh/topology.h"
 #include "hybrid_quad/pipeline/attempts.h"
-#include "hybrid_quad/pipeline/component.h"
 #include "hybrid_quad/regular_quads/regular_quads.h"
 #include "hybrid_quad/singular_patches/singular_patches.h"
 #include "hybrid_quad/sizing/sizing.h"

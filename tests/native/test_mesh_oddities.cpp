@@ -37,7 +37,7 @@ std::vector<int> intersecting(const PolygonSoup& soup) {
 TEST(SelfIntersection, SoundMeshesHaveNone) {
   for (const TriangleMesh& mesh : {test::torus(24, 12), test::icosphere(2), test::box(3), test::wedge(3, 5),
                                    test::capped_cylinder(64, 4), test::flat_grid(5, 5)})
-    EXPECT_TRUE(self_intersecting_faces(SurfaceIndex(mesh, {})).empty());
+    EXPECT_TRUE(self_intersecting_faces(SurfaceIndex(mesh, {})).faces.empty());
 }
 
 TEST(SelfIntersection, TwoBodiesAreFoundWhereTheirSurfacesMeetAtAnyScaleAndPlace) {
@@ -67,9 +67,9 @@ TEST(SelfIntersection, ApartOrTouchingIsNone) {
 
 TEST(SelfIntersection, FindsFacesFoldedOntoEachOther) {
   const TriangleMesh folded({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.4, 0.9, 0}}, {{0, 1, 2}, {1, 0, 3}});
-  EXPECT_EQ(self_intersecting_faces(SurfaceIndex(folded, {})), (std::vector<int>{0, 1}));
+  EXPECT_EQ(self_intersecting_faces(SurfaceIndex(folded, {})).faces, (std::vector<int>{0, 1}));
   const TriangleMesh flat({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.4, -0.9, 0}}, {{0, 1, 2}, {1, 0, 3}});
-  EXPECT_TRUE(self_intersecting_faces(SurfaceIndex(flat, {})).empty());
+  EXPECT_TRUE(self_intersecting_faces(SurfaceIndex(flat, {})).faces.empty());
 }
 
 TEST(SelfIntersection, AgreesWithTryingAllPairs) {
@@ -167,6 +167,22 @@ TEST(UnitFrame, PowersOfTwoMakeNoDifference) {
     const UnitFrame frame = unit_frame_of(scaled, false);
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(frame.inward(scaled[i]), usual.inward(points[i]));
   }
+}
+
+TEST(MeshOddities, WhereTheSearchForIntersectionsEndsEarlyCheckSaysSo) {
+  PolygonSoup fan;
+  const int count = 9000;
+  fan.positions.push_back(Vector3::Zero());
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * EIGEN_PI * i / count;
+    fan.positions.push_back(Vector3(std::cos(angle), std::sin(angle), 0));
+    fan.face_sizes.push_back(3);
+    for (const int v : {0, i + 1, (i + 1) % count + 1}) fan.face_vertices.push_back(v);
+  }
+  const std::vector<Defect> defects = check_mesh(fan);
+  ASSERT_NE(find_defect(defects, "unknown_intersection"), nullptr);
+  EXPECT_EQ(find_defect(defects, "self_intersection"), nullptr);
+  EXPECT_EQ(find_defect(check_mesh(test::soup_of(test::icosphere(3))), "unknown_intersection"), nullptr);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ WORDS = {
     "isolated_vertex": ("loose vertex", "loose vertices"),
     "loose_edge": ("loose edge", "loose edges"),
     "self_intersection": ("intersecting face", "intersecting faces"),
+    "unknown_intersection": ("faces that may intersect", "faces that may intersect"),
     "touching_vertex": ("vertex where sheets touch", "vertices where sheets touch"),
     "far_vertex": ("far-off vertex", "far-off vertices"),
     "tiny_component": ("face of a tiny part", "faces of tiny parts"),

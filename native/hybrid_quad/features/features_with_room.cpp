@@ -15,7 +15,6 @@ namespace {
 constexpr double kSamples = 4;       ///< a gap
 constexpr double kLeastLine = 2;     ///< gaps; what is shorter goes
 constexpr double kMostCovered = 0.5;
-constexpr double kMostSamples = 1e6;  ///< along all curves: of a surface thin as a hair there would be as many as its length has widths
 const double kStraightOn = std::cos(40 * 3.14159265358979323846 / 180);
 
 /// Points in cubes as large as the distance that is asked for.
@@ -244,14 +243,6 @@ class LineChoice {
 std::vector<char> features_with_room(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept,
                                      double gap, const RunContext& context) {
   context.checkpoint();
-  double length = 0;
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (features.is_feature(h) && mesh.opposite(h) < h) length += mesh.edge_length(h);
-  if (kSamples * length > kMostSamples * gap) {
-    std::vector<char> all(mesh.halfedge_count());
-    for (int h = 0; h < mesh.halfedge_count(); ++h) all[h] = features.is_feature(h);
-    return all;
-  }
   return LineChoice(mesh, features, is_kept, gap, context).run();
 }
 

@@ -10,7 +10,7 @@ namespace hybrid_quad {
 /// taken goes, as do lines and pieces that are hardly longer than it.
 /// \param is_kept  3 #F: half-edges of features that stay whatever else there is, both sides of an edge alike
 /// \param gap  scene units
-/// \returns 3 #F: half-edges of features that remain; all of them where they are as long as of a surface thin as a hair
+/// \returns 3 #F: half-edges of features that remain  \throws Cancelled
 std::vector<char> features_with_room(const TriangleMesh& mesh, const FeatureGraph& features, const std::vector<char>& is_kept,
                                      double gap, const RunContext& context);
 

@@ -8,7 +8,7 @@ namespace hybrid_quad {
 
 /// Quarter turns k in Z/4, stored as 0..3, act on everything that lives in a face's gauge. One turn maps
 ///   (u, v) -> (v, -u),   (alpha, beta) -> (-beta, alpha),   (a, b) -> (conj b, a),
-/// which are the same thing, because alpha = pi (u + v), beta = pi (u - v), a = e^{i alpha}, b = e^{i beta} (paper 2.1).
+/// which are the same thing, because alpha = pi (u + v), beta = pi (u - v), a = e^{i alpha}, b = e^{i beta} (paper 2.3).
 
 inline int wrap_turns(int k) { return k & 3; }
 inline int inverse_turns(int k) { return (4 - (k & 3)) & 3; }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -30,8 +29,8 @@ constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
-constexpr double kLeastWidth = 2e-6;  ///< of a part: its area over the square of its box's diagonal
 constexpr double kMostCoordinate = 1e-3 * std::numeric_limits<double>::max();  ///< beyond it differences, and their sums, overflow
+constexpr double kLeastWidth = 2e-6;     ///< of a part: its area over the square of its box's diagonal (docs/decisions/0050)
 constexpr double kLeastShare = 1e-9;     ///< of the area; parts with less are specks, a thirty thousandth as long as the rest
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
@@ -436,57 +435,17 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   return built;
 }
 
-/// Takes the faces away that a refusal is about, where it is about some. \param face  of the soup that is left, in the one that was given
-/// \returns whether any were taken away and any are left
-bool leave_out(const Defect& refusal, PolygonSoup& soup, std::vector<int>& face) {
-  const bool by_vertices = refusal.element_kind == "vertex";
-  if (!by_vertices && refusal.code != "index_out_of_range") return false;
-  std::vector<char> is_bad(by_vertices ? soup.positions.size() : soup.face_sizes.size(), 0);
-  for (const int i : refusal.elements) is_bad[i] = 1;
-  std::vector<int> sizes, vertices, kept;
-  std::size_t first = 0;
-  for (std::size_t f = 0; f < soup.face_sizes.size(); ++f) {
-    const auto begin = soup.face_vertices.begin() + static_cast<std::ptrdiff_t>(first), end = begin + soup.face_sizes[f];
-    first += soup.face_sizes[f];
-    if (by_vertices ? std::any_of(begin, end, [&](int v) { return is_bad[v] != 0; }) : is_bad[f] != 0) continue;
-    sizes.push_back(soup.face_sizes[f]);
-    vertices.insert(vertices.end(), begin, end);
-    kept.push_back(face[f]);
-  }
-  const bool is_any_taken = sizes.size() < soup.face_sizes.size();
-  soup.face_sizes = std::move(sizes);
-  soup.face_vertices = std::move(vertices);
-  face = std::move(kept);
-  return is_any_taken && !face.empty();
-}
-
 }  // namespace
 
-std::vector<Defect> check_mesh(const PolygonSoup& soup) {
-  std::vector<Defect> found;
-  PolygonSoup rest = soup;
-  std::vector<int> face(soup.face_sizes.size());
-  std::iota(face.begin(), face.end(), 0);
-  for (bool is_whole = true;; is_whole = false) {
-    MeshBuilder builder(rest);
-    bool is_refused = false;
-    try {
-      const BuiltMesh built = builder.build({});
-      for (Defect& oddity : oddities_of(built)) builder.defects.push_back(std::move(oddity));
-    } catch (const InputError&) {
-      is_refused = true;  // the last defect says why
-    }
-    const Defect last = builder.defects.empty() ? Defect{} : builder.defects.back();
-    std::vector<Defect> here;
-    for (Defect& defect : builder.defects) {
-      // What the faces that were left out leave behind is no defect of the mesh.
-      if (!is_whole && (defect.code == "isolated_vertex" || defect.elements.empty())) continue;
-      if (defect.element_kind == "face")
-        for (int& f : defect.elements) f = face[f];
-      here.push_back(std::move(defect));
-    }
-    found.insert(found.begin(), here.begin(), here.end());  // so that what a run is refused for comes last
-    if (!is_refused || !leave_out(last, rest, face)) return found;
+BuiltMesh build_mesh(const PolygonSoup& soup, std::vector<Defect>& defects) {
+  MeshBuilder builder(soup);
+  try {
+    BuiltMesh built = builder.build({});
+    defects = std::move(builder.defects);
+    return built;
+  } catch (const InputError&) {
+    defects = std::move(builder.defects);
+    throw;
   }
 }
 

@@ -43,4 +43,7 @@ std::vector<Defect> check_mesh(const PolygonSoup& soup);
 /// \throws InputError empty_mesh, index_out_of_range, non_finite_vertex, non_orientable, no_area, coordinate_outlier ...; Cancelled
 BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context = {});
 
+/// The same. \param defects  gets what was found, also where that is a reason to refuse the mesh, which then comes last
+BuiltMesh build_mesh(const PolygonSoup& soup, std::vector<Defect>& defects);
+
 }  // namespace hybrid_quad

@@ -21,14 +21,17 @@ void note(std::vector<Defect>& defects, const char* code, const char* kind, std:
   defects.push_back({code, kind, std::move(elements), true, true, remedy});
 }
 
-std::vector<int> intersecting_polygons(const BuiltMesh& built) {
+void note_intersections(const BuiltMesh& built, std::vector<Defect>& defects) {
   const UnitFrame frame = unit_frame_of(built.mesh.positions(), false);
   std::vector<Vector3> positions = built.mesh.positions();
   for (Vector3& p : positions) p = frame.inward(p);
   const TriangleMesh mesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
+  const SelfIntersections found = self_intersecting_faces(SurfaceIndex(mesh, {}));
   std::vector<int> polygons;
-  for (const int f : self_intersecting_faces(SurfaceIndex(mesh, {}))) polygons.push_back(built.input_face[f]);
-  return polygons;
+  for (const int f : found.faces) polygons.push_back(built.input_face[f]);
+  note(defects, "self_intersection", "face", std::move(polygons), "stays: the quads intersect there as well");
+  if (!found.is_complete)
+    defects.push_back({"unknown_intersection", "", {}, true, true, "so many faces lie about one place that not all pairs were looked at"});
 }
 
 /// Copies of one input vertex are not meant: where these come from, the mesh was cut and says so.
@@ -65,7 +68,7 @@ void note_touching_vertices(const BuiltMesh& built, std::vector<Defect>& defects
 
 std::vector<Defect> oddities_of(const BuiltMesh& built) {
   std::vector<Defect> defects;
-  note(defects, "self_intersection", "face", intersecting_polygons(built), "stays: the quads intersect there as well");
+  note_intersections(built, defects);
   note_touching_vertices(built, defects);
   note(defects, "far_vertex", "vertex", far_vertices(built), "stays, far from all others");
   return defects;

@@ -74,7 +74,7 @@ bool cross_each_other(const Triangle& a, const Triangle& b) {
 
 }  // namespace
 
-std::vector<int> self_intersecting_faces(const SurfaceIndex& index) {
+SelfIntersections self_intersecting_faces(const SurfaceIndex& index) {
   const TriangleMesh& mesh = index.mesh();
   std::vector<char> found(mesh.face_count(), 0);
   // Where thousands of faces lie about one place, as around the tip of a fan, every pair of them would be looked at.
@@ -84,7 +84,7 @@ std::vector<int> self_intersecting_faces(const SurfaceIndex& index) {
     const auto& t = mesh.face(f);
     return Triangle{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   };
-  for (int f = 0; f < mesh.face_count() && pairs_left > 0; ++f) {
+  for (int f = 0; f < mesh.face_count() && pairs_left >= 0; ++f) {
     if (found[f]) continue;
     const Triangle t = triangle(f);
     const Vector3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
@@ -95,10 +95,10 @@ std::vector<int> self_intersecting_faces(const SurfaceIndex& index) {
       return true;
     });
   }
-  std::vector<int> faces;
+  SelfIntersections out{{}, pairs_left >= 0};
   for (int f = 0; f < mesh.face_count(); ++f)
-    if (found[f]) faces.push_back(f);
-  return faces;
+    if (found[f]) out.faces.push_back(f);
+  return out;
 }
 
 }  // namespace hybrid_quad

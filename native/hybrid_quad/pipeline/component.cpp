@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
-#include "hybrid_quad/pipeline/attempts.h"
+#include "hybrid_quad/pipeline/broken_promises.h"
 #include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"

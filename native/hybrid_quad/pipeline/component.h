@@ -38,12 +38,6 @@ struct ComponentResult {
   std::vector<std::string> warnings;
 };
 
-/// Whichever result is gone on with, what broke on the way to it is told: from one that is dropped to the one that takes its place.
-inline void keep_broken_promises(const ComponentResult& dropped, ComponentResult& kept) {
-  kept.repairs.broken_promises += dropped.repairs.broken_promises;
-  kept.warnings.insert(kept.warnings.end(), dropped.warnings.begin(), dropped.warnings.end());
-}
-
 /// What all passes beyond the components' first may take, in faces of working surfaces, counted for each try at an extraction.
 /// A time would make the result depend on the machine.
 struct WorkBudget {

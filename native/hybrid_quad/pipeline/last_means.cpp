@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hybrid_quad/improve/improve.h"
-#include "hybrid_quad/pipeline/attempts.h"
+#include "hybrid_quad/pipeline/broken_promises.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/settle_count.h"
 #include "hybrid_quad/pipeline/validity.h"

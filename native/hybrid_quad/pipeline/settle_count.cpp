@@ -8,7 +8,7 @@
 #include "hybrid_quad/assemble/feature_chains.h"
 #include "hybrid_quad/mesh/quad_count.h"
 #include "hybrid_quad/mesh/topology.h"
-#include "hybrid_quad/pipeline/attempts.h"
+#include "hybrid_quad/pipeline/broken_promises.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/pipeline/finishing.h"
 

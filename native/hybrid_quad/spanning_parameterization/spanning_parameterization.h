@@ -47,6 +47,8 @@ SpanningParameterization build_spanning_parameterization(const WorkingSurface& s
                                                          const SpanningOptions& options,
                                                          const RunContext& context);
 
+/// What of the promises above does not hold, and that features of regular faces lie on integer lines, cones and corners at integer points.
+/// Compares integers for equality.
 std::vector<std::string> violations_of(const SpanningParameterization& param, const WorkingSurface& surface,
                                        const FrameField& frames);
 
