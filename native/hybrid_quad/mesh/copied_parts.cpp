@@ -50,7 +50,12 @@ std::vector<Part> parts_of(const std::vector<Vector3>& positions, const std::vec
 
 std::vector<char> copied_parts(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
   std::vector<char> is_copied(faces.size(), 0);
-  const std::vector<int> part_of = part_of_vertices(positions.size(), faces), place = places_of(positions);
+  const std::vector<int> place = places_of(positions);
+  // Parts have no vertex in common: without two at one place, no triangles lie in one.
+  bool is_each_alone = true;
+  for (int v = 0; v < static_cast<int>(place.size()); ++v) is_each_alone = is_each_alone && place[v] == v;
+  if (is_each_alone) return is_copied;
+  const std::vector<int> part_of = part_of_vertices(positions.size(), faces);
   // Groups of triangles in one place, with the parts that have one there.
   using Key = std::tuple<std::array<int, 3>, int>;
   std::vector<Key> keys;

@@ -39,19 +39,20 @@ std::vector<int> marks_of(const TriangleMesh& mesh, const EdgeSet& marked_edges,
   return number;
 }
 
-/// Whether some edges have both ends in common.
-bool has_edges_with_common_ends(const EditableMesh& mesh) {
+/// Whether some edges have both ends in common, of a TriangleMesh or of an EditableMesh that edges were split in.
+template <class Mesh>
+bool has_edges_with_common_ends(const Mesh& mesh, int vertices, int halfedges) {
   // Half-edges, one an edge, sorted by their lower ends.
-  std::vector<int> begin(mesh.vertex_slots() + 1, 0), seen_from(mesh.vertex_slots(), -1);
+  std::vector<int> begin(vertices + 1, 0), seen_from(vertices, -1);
   const auto visit = [&](const auto& use) {
-    for (int h = 0; h < mesh.halfedge_slots(); ++h)
-      if (mesh.is_face(h / 3) && mesh.opposite(h) < h) use(std::min(mesh.from(h), mesh.to(h)), std::max(mesh.from(h), mesh.to(h)));
+    for (int h = 0; h < halfedges; ++h)
+      if (mesh.opposite(h) < h) use(std::min(mesh.from(h), mesh.to(h)), std::max(mesh.from(h), mesh.to(h)));
   };
   visit([&](int low, int) { ++begin[low + 1]; });
-  for (int v = 0; v < mesh.vertex_slots(); ++v) begin[v + 1] += begin[v];
+  for (int v = 0; v < vertices; ++v) begin[v + 1] += begin[v];
   std::vector<int> high_ends(begin.back()), end(begin.begin(), begin.end() - 1);
   visit([&](int low, int high) { high_ends[end[low]++] = high; });
-  for (int v = 0; v < mesh.vertex_slots(); ++v)
+  for (int v = 0; v < vertices; ++v)
     for (int i = begin[v]; i < begin[v + 1]; ++i) {
       if (seen_from[high_ends[i]] == v) return true;
       seen_from[high_ends[i]] = v;
@@ -59,10 +60,34 @@ bool has_edges_with_common_ends(const EditableMesh& mesh) {
   return false;
 }
 
+/// Whether bisect_long_edges() halves an edge for its length.
+bool has_long_edges(const TriangleMesh& mesh, double longest) {
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (mesh.opposite(h) < h && static_cast<float>(mesh.edge_vector(h).squaredNorm()) > static_cast<float>(longest * longest)) return true;
+  return false;
+}
+
+/// \param mark_number  of half-edges, as marks_of() gives it
+BisectedMesh with_marks(TriangleMesh mesh, std::vector<int> face_source, const std::vector<int>& mark_number,
+                        const std::vector<Mark>& marks, std::size_t chain_count) {
+  BisectedMesh out;
+  out.chains.resize(chain_count);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mark_number[h] < 0 || mesh.opposite(h) >= h) continue;
+    const Mark& mark = marks[mark_number[h]];
+    out.marked_edges.push_back({mesh.from(h), mesh.to(h)});
+    out.source.push_back(mark.marked);
+    if (mark.chain >= 0) out.chains[mark.chain].push_back(out.marked_edges.back());
+  }
+  out.mesh = std::move(mesh);
+  out.face_source = std::move(face_source);
+  return out;
+}
+
 /// Halves edges that have both ends in common with another until there are none: what comes after knows edges by their ends.
 /// Cuts at non-manifold edges leave such edges.
 void split_edges_with_common_ends(EditableMesh& edited) {
-  while (has_edges_with_common_ends(edited)) {
+  while (has_edges_with_common_ends(edited, edited.vertex_slots(), edited.halfedge_slots())) {
     std::vector<std::pair<std::array<int, 2>, int>> edges;
     for (int h = 0; h < edited.halfedge_slots(); ++h)
       if (edited.is_face(h / 3) && edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
@@ -94,9 +119,12 @@ struct LongEdge {
 BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const EdgeSet& marked_edges,
                                const std::vector<EdgeSet>& chains, double most_splits) {
   std::vector<Mark> marks;
+  std::vector<int> mark_number = marks_of(mesh, marked_edges, chains, marks);
   std::vector<int> faces(mesh.face_count());
   std::iota(faces.begin(), faces.end(), 0);
-  EditableMesh edited(mesh, marks_of(mesh, marked_edges, chains, marks), std::move(faces));
+  if (!has_long_edges(mesh, longest) && !has_edges_with_common_ends(mesh, mesh.vertex_count(), mesh.halfedge_count()))
+    return with_marks(mesh, std::move(faces), mark_number, marks, chains.size());
+  EditableMesh edited(mesh, std::move(mark_number), std::move(faces));
   split_edges_with_common_ends(edited);
   std::priority_queue<LongEdge> queue;
   const auto squared_length = [&](int h) { return static_cast<float>(edited.edge_vector(h).squaredNorm()); };
@@ -119,18 +147,7 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
     });
   }
   EditableMesh::Compacted compacted = edited.compacted();
-  BisectedMesh out;
-  out.chains.resize(chains.size());
-  for (int h = 0; h < compacted.mesh.halfedge_count(); ++h) {
-    if (compacted.halfedge_curve[h] < 0 || compacted.mesh.opposite(h) >= h) continue;
-    const Mark& mark = marks[compacted.halfedge_curve[h]];
-    out.marked_edges.push_back({compacted.mesh.from(h), compacted.mesh.to(h)});
-    out.source.push_back(mark.marked);
-    if (mark.chain >= 0) out.chains[mark.chain].push_back(out.marked_edges.back());
-  }
-  out.mesh = std::move(compacted.mesh);
-  out.face_source = std::move(compacted.face_region);
-  return out;
+  return with_marks(std::move(compacted.mesh), std::move(compacted.face_region), compacted.halfedge_curve, marks, chains.size());
 }
 
 double affordable_length(const TriangleMesh& mesh, double longest, double most_pieces) {

@@ -86,6 +86,7 @@ class MeshBuilder {
   double farthest_ = 0;  ///< the largest of the given coordinates, without its sign
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
+  bool is_closed_ = false;   ///< no edge was open before copies of triangles went
   std::vector<int> welded_;  ///< vertices merged with others at the same place
   std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
 };
@@ -251,6 +252,8 @@ void MeshBuilder::weld_exactly() {
 }
 
 void MeshBuilder::weld() {
+  is_closed_ = open_edges(triangles_).empty();
+  if (is_closed_) return;
   weld_exactly();
   if (triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
   const std::vector<int> target = nearly_welded_vertices(positions_, kLooseTolerance);
@@ -359,6 +362,13 @@ void resolve_faces(BuiltMesh& built) {
 void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   const TriangleMesh& mesh = built.mesh;
   const std::vector<Weight> weight = weight_of_faces(mesh, kLeastShare, kLeastWidth);
+  if (std::all_of(weight.begin(), weight.end(), [](Weight w) { return w == Weight::kCounts; })) {
+    std::vector<Vector3> given;
+    given.reserve(built.input_vertex.size());
+    for (const int v : built.input_vertex) given.push_back(ordered_.soup.positions[v]);
+    built.mesh = std::move(built.mesh).with_positions(std::move(given));
+    return;
+  }
   std::vector<int> tiny, thin;
   BuiltMesh kept;
   std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
@@ -417,7 +427,8 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   drop_duplicates();
   context.checkpoint();
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
-  std::vector<int> split_at = split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_);
+  std::vector<int> split_at;
+  if (!is_closed_ || !copies_.empty()) split_at = split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_);
   // Their parts may lie exactly on other open edges, as the whole ones did not.
   if (!split_at.empty()) weld_exactly();
   note("unwelded_vertex", "vertex", std::move(welded_), "merged with the vertex at the same place");

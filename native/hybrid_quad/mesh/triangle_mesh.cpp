@@ -55,6 +55,11 @@ TriangleMesh::TriangleMesh(std::vector<Vector3> positions, std::vector<std::arra
   index_vertices();
 }
 
+TriangleMesh TriangleMesh::with_positions(std::vector<Vector3> positions) && {
+  positions_ = std::move(positions);
+  return std::move(*this);
+}
+
 void TriangleMesh::index_vertices() {
   outgoing_.assign(positions_.size(), -1);
   boundary_.assign(positions_.size(), 0);

@@ -24,6 +24,9 @@ class TriangleMesh {
   /// Takes the gluing as given (edges that vertex pairs cannot tell apart).
   TriangleMesh(std::vector<Vector3> positions, std::vector<std::array<int, 3>> faces, std::vector<int> opposite);
 
+  /// The same faces, joined alike. \pre a position for each vertex
+  TriangleMesh with_positions(std::vector<Vector3> positions) &&;
+
   int vertex_count() const { return static_cast<int>(positions_.size()); }
   int face_count() const { return static_cast<int>(faces_.size()); }
   int halfedge_count() const { return 3 * face_count(); }

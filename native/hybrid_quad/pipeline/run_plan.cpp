@@ -133,7 +133,7 @@ Sizes sizes_on(const std::vector<Component>& components, const std::vector<Marke
 void move_inward(const UnitFrame& frame, BuiltMesh& built, RemeshOptions& options, RunContext& context) {
   std::vector<Vector3> positions = built.mesh.positions();
   for (Vector3& p : positions) p = frame.inward(p);
-  built.mesh = TriangleMesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
+  built.mesh = std::move(built.mesh).with_positions(std::move(positions));
   options.edge_length /= frame.scale;
   options.chord_error /= frame.scale;
   for (GuideStroke& stroke : options.strokes)
