@@ -57,8 +57,18 @@ TEST(EdgeBisection, StopsWithTheLongestHalved) {
 
 TEST(EdgeBisection, LeavesShortEdgesAlone) {
   const TriangleMesh mesh = test::icosphere(3);
-  const BisectedMesh same = bisect_long_edges(mesh, longest_edge(mesh), {});
-  EXPECT_EQ(same.mesh.face_count(), mesh.face_count());
+  const EdgeSet marked{{mesh.from(0), mesh.to(0)}}, chain{{mesh.from(4), mesh.to(4)}};
+  const BisectedMesh same = bisect_long_edges(mesh, longest_edge(mesh), marked, {chain});
+  EXPECT_EQ(same.mesh.positions(), mesh.positions());
+  EXPECT_EQ(same.mesh.faces(), mesh.faces());
+  EXPECT_EQ(same.mesh.opposites(), mesh.opposites());
+  for (int f = 0; f < mesh.face_count(); ++f) EXPECT_EQ(same.face_source[f], f);
+  ASSERT_EQ(same.marked_edges.size(), 2u);
+  EXPECT_EQ(std::multiset<int>(same.source.begin(), same.source.end()), (std::multiset<int>{-1, 0}));
+  ASSERT_EQ(same.chains.size(), 1u);
+  ASSERT_EQ(same.chains[0].size(), 1u);
+  const auto ends = [](const std::array<int, 2>& e) { return std::set<int>{e[0], e[1]}; };
+  EXPECT_EQ(ends(same.chains[0][0]), ends(chain[0]));
 }
 
 TEST(EdgeBisection, HandsMarksOnToTheParts) {

@@ -32,6 +32,18 @@ TEST(TriangleMesh, BoundaryFanStartsAtItsFirstHalfedge) {
   EXPECT_EQ(m.euler_characteristic(), 1);
 }
 
+TEST(TriangleMesh, KeepsItsHalfedgesWhereItIsMoved) {
+  const TriangleMesh m = tetrahedron();
+  std::vector<Vector3> twice = m.positions();
+  for (Vector3& p : twice) p *= 2;
+  const TriangleMesh moved = TriangleMesh(m).with_positions(twice);
+  EXPECT_EQ(moved.positions(), twice);
+  EXPECT_EQ(moved.faces(), m.faces());
+  EXPECT_EQ(moved.opposites(), m.opposites());
+  for (int v = 0; v < m.vertex_count(); ++v) EXPECT_EQ(moved.outgoing(v), m.outgoing(v));
+  EXPECT_NEAR(moved.total_area(), 4 * m.total_area(), 1e-12);
+}
+
 TEST(TriangleMesh, RefusesWhatIsNoManifold) {
   const std::vector<Vector3> p{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
   EXPECT_THROW(TriangleMesh(p, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}), InternalError);
