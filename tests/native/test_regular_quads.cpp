@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "hybrid_quad/regular_quads/curve_coordinates.h"
 #include "hybrid_quad/regular_quads/regular_quads.h"
 #include "hybrid_quad/singular_patches/singular_patches.h"
 #include "hybrid_quad/assemble/assemble.h"
@@ -54,6 +55,20 @@ TEST(RegularQuads, CoverARectangleWhateverItsTriangles) {
     EXPECT_EQ(q.side.size(), 108u) << n << " x " << m;
     for (const int cell : q.piece_cell) EXPECT_GE(cell, 0);
   }
+}
+
+TEST(RegularQuads, CurvesFollowTheirIsolinesWhereFramesAreSlanted) {
+  Scene s = rectangle(7, 5, 12, 9);
+  ASSERT_EQ(build_curve_coordinates(s.surface, s.frames, s.param).altered_edges, 0);
+  for (int h = 0; h < s.surface.mesh.halfedge_count(); ++h) {
+    if (!s.surface.mesh.is_boundary(h)) continue;
+    Vector3 &du = s.frames.du[h / 3], &dv = s.frames.dv[h / 3];
+    if (s.param.halfedge_uv[h][1] == 0) dv += 2 * du;
+    else du += 2 * dv;
+    break;
+  }
+  EXPECT_EQ(build_curve_coordinates(s.surface, s.frames, s.param).altered_edges, 0);
+  EXPECT_EQ(extract_regular_quads(s.surface, s.frames, s.param, RunContext{}).side.size(), 108u);
 }
 
 TEST(RegularQuads, OverlayKeepsTheArea) {

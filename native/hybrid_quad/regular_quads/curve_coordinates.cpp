@@ -147,7 +147,10 @@ class CurveBuilder {
   /// The axis (0 = u, 1 = v) that the curve follows in the gauge of the edge's face, and its sense along the curve.
   std::pair<int, int> axis_of(const CurveEdge& e) const {
     const Vector2 asked = frames_.grid_vector(surface_.mesh, e.halfedge) * (e.along ? 1.0 : -1.0);
-    const int axis = std::abs(asked[0]) >= std::abs(asked[1]) ? 0 : 1;
+    const GridVector& d = param_.halfedge_uv[e.halfedge];
+    // Of a slanted frame the edge may have more of the other axis.
+    const bool is_on_isoline = (d[0] == 0) != (d[1] == 0);
+    const int axis = (is_on_isoline ? d[0] != 0 : std::abs(asked[0]) >= std::abs(asked[1])) ? 0 : 1;
     return {axis, asked[axis] >= 0 ? 1 : -1};
   }
 
