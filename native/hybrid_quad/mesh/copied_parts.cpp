@@ -52,9 +52,8 @@ std::vector<char> copied_parts(const std::vector<Vector3>& positions, const std:
   std::vector<char> is_copied(faces.size(), 0);
   const std::vector<int> place = places_of(positions);
   // Parts have no vertex in common: without two at one place, no triangles lie in one.
-  bool is_each_alone = true;
-  for (int v = 0; v < static_cast<int>(place.size()); ++v) is_each_alone = is_each_alone && place[v] == v;
-  if (is_each_alone) return is_copied;
+  int v = 0;
+  if (std::all_of(place.begin(), place.end(), [&v](int first) { return first == v++; })) return is_copied;
   const std::vector<int> part_of = part_of_vertices(positions.size(), faces);
   // Groups of triangles in one place, with the parts that have one there.
   using Key = std::tuple<std::array<int, 3>, int>;

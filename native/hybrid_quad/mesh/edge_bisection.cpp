@@ -60,10 +60,13 @@ bool has_edges_with_common_ends(const Mesh& mesh, int vertices, int halfedges) {
   return false;
 }
 
-/// Whether bisect_long_edges() halves an edge for its length.
+/// In single precision: halves of an edge are equal, however the surface lies in space.
+float squared(const Vector3& edge) { return static_cast<float>(edge.squaredNorm()); }
+bool is_long(float squared_length, double longest) { return squared_length > static_cast<float>(longest * longest); }
+
 bool has_long_edges(const TriangleMesh& mesh, double longest) {
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (mesh.opposite(h) < h && static_cast<float>(mesh.edge_vector(h).squaredNorm()) > static_cast<float>(longest * longest)) return true;
+    if (mesh.opposite(h) < h && is_long(squared(mesh.edge_vector(h)), longest)) return true;
   return false;
 }
 
@@ -90,7 +93,7 @@ void split_edges_with_common_ends(EditableMesh& edited) {
   while (has_edges_with_common_ends(edited, edited.vertex_slots(), edited.halfedge_slots())) {
     std::vector<std::pair<std::array<int, 2>, int>> edges;
     for (int h = 0; h < edited.halfedge_slots(); ++h)
-      if (edited.is_face(h / 3) && edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
+      if (edited.opposite(h) < h) edges.push_back({sorted_pair(edited.from(h), edited.to(h)), h});
     std::sort(edges.begin(), edges.end());
     // One at a time of each face, none of the faces that come from it: splitting renames half-edges.
     std::vector<char> is_touched(edited.face_slots(), 0);
@@ -107,7 +110,7 @@ void split_edges_with_common_ends(EditableMesh& edited) {
 }
 
 struct LongEdge {
-  float squared_length;  ///< single precision: halves of an edge are equal, however the surface lies in space
+  float squared_length;
   int halfedge;
   bool operator<(const LongEdge& other) const {
     return squared_length != other.squared_length ? squared_length < other.squared_length : halfedge > other.halfedge;
@@ -127,10 +130,9 @@ BisectedMesh bisect_long_edges(const TriangleMesh& mesh, double longest, const E
   EditableMesh edited(mesh, std::move(mark_number), std::move(faces));
   split_edges_with_common_ends(edited);
   std::priority_queue<LongEdge> queue;
-  const auto squared_length = [&](int h) { return static_cast<float>(edited.edge_vector(h).squaredNorm()); };
+  const auto squared_length = [&](int h) { return squared(edited.edge_vector(h)); };
   const auto push = [&](int h) {
-    const float squared = squared_length(h);
-    if (squared > static_cast<float>(longest * longest)) queue.push({squared, h});
+    if (is_long(squared_length(h), longest)) queue.push({squared_length(h), h});
   };
   for (int h = 0; h < edited.halfedge_slots(); ++h)
     if (edited.opposite(h) < h) push(h);

@@ -64,6 +64,7 @@ class MeshBuilder {
   void drop(const std::vector<char>& is_copy);
   BuiltMesh glue();
   void drop_negligible_components(BuiltMesh& built);
+  void put_back(BuiltMesh& built) const;
 
   std::vector<int> as_given(const char* kind, std::vector<int> elements) const {
     return is_in_order_ ? given_elements(ordered_, kind, std::move(elements)) : elements;
@@ -86,7 +87,7 @@ class MeshBuilder {
   double farthest_ = 0;  ///< the largest of the given coordinates, without its sign
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> polygon_;        ///< of each triangle
-  bool is_closed_ = false;   ///< no edge was open before copies of triangles went
+  bool is_closed_ = false;   ///< no edge was open when vertices were last welded
   std::vector<int> welded_;  ///< vertices merged with others at the same place
   std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
 };
@@ -243,7 +244,10 @@ std::vector<int> merged(const std::vector<int>& target) {
 }
 
 void MeshBuilder::weld_exactly() {
-  const std::vector<int> target = welded_vertices(positions_, triangles_);
+  const auto open = open_edges(triangles_);
+  is_closed_ = open.empty();
+  if (is_closed_) return;
+  const std::vector<int> target = welded_vertices(positions_, open);
   if (!merge_vertices(target)) return;
   const std::vector<int> list = merged(target);
   welded_.insert(welded_.end(), list.begin(), list.end());
@@ -252,10 +256,8 @@ void MeshBuilder::weld_exactly() {
 }
 
 void MeshBuilder::weld() {
-  is_closed_ = open_edges(triangles_).empty();
-  if (is_closed_) return;
   weld_exactly();
-  if (triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
+  if (is_closed_ || triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
   const std::vector<int> target = nearly_welded_vertices(positions_, kLooseTolerance);
   const auto triangles = triangles_;
   const auto polygon = polygon_;
@@ -357,38 +359,24 @@ void resolve_faces(BuiltMesh& built) {
   put_in_order(built);
 }
 
-/// Drops components without area, and those so small that their quads would have none, and puts the vertices back at
-/// their places in the input.
-void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
+/// The faces of these weights that count, in their order.
+BuiltMesh part_that_counts(const BuiltMesh& built, const std::vector<Weight>& weight) {
   const TriangleMesh& mesh = built.mesh;
-  const std::vector<Weight> weight = weight_of_faces(mesh, kLeastShare, kLeastWidth);
-  if (std::all_of(weight.begin(), weight.end(), [](Weight w) { return w == Weight::kCounts; })) {
-    std::vector<Vector3> given;
-    given.reserve(built.input_vertex.size());
-    for (const int v : built.input_vertex) given.push_back(ordered_.soup.positions[v]);
-    built.mesh = std::move(built.mesh).with_positions(std::move(given));
-    return;
-  }
-  std::vector<int> tiny, thin;
   BuiltMesh kept;
   std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
   std::vector<Vector3> positions;
   std::vector<std::array<int, 3>> faces;
-  for (int f = 0; f < mesh.face_count(); ++f)
-    if (weight[f] == Weight::kTiny) {
-      tiny.push_back(built.input_face[f]);
-    } else if (weight[f] == Weight::kThin) {
-      thin.push_back(built.input_face[f]);
-    } else if (weight[f] == Weight::kCounts) {
-      new_face[f] = static_cast<int>(kept.input_face.size());
-      kept.input_face.push_back(built.input_face[f]);
-      for (const int v : mesh.face(f)) new_vertex[v] = 0;
-    }
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (weight[f] != Weight::kCounts) continue;
+    new_face[f] = static_cast<int>(kept.input_face.size());
+    kept.input_face.push_back(built.input_face[f]);
+    for (const int v : mesh.face(f)) new_vertex[v] = 0;
+  }
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (new_vertex[v] == 0) {
       new_vertex[v] = static_cast<int>(positions.size());
       kept.input_vertex.push_back(built.input_vertex[v]);
-      positions.push_back(ordered_.soup.positions[built.input_vertex[v]]);
+      positions.push_back(mesh.position(v));
     }
   for (int f = 0; f < mesh.face_count(); ++f)
     if (new_face[f] >= 0) {
@@ -398,17 +386,38 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
         opposite.push_back(o < 0 ? -1 : 3 * new_face[o / 3] + o % 3);
       }
     }
-  for (std::vector<int>* list : {&tiny, &thin}) {
-    std::sort(list->begin(), list->end());
-    list->erase(std::unique(list->begin(), list->end()), list->end());
-  }
-  if (faces.empty() && !thin.empty())
-    refuse("thin_component", "The mesh is as thin as a hair: hundreds of thousands of times as long as wide.", "face", std::move(thin));
-  if (faces.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
-  note("thin_component", "face", std::move(thin), "left out: hundreds of thousands of times as long as wide");
-  note("tiny_component", "face", std::move(tiny), "left out: too small beside the rest for quads with an area");
   kept.mesh = TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
-  built = std::move(kept);
+  return kept;
+}
+
+/// Drops components without area, and those so small that their quads would have none.
+void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
+  const std::vector<Weight> weight = weight_of_faces(built.mesh, kLeastShare, kLeastWidth);
+  const auto polygons_of = [&](Weight of) {
+    std::vector<int> list;
+    for (std::size_t f = 0; f < weight.size(); ++f)
+      if (weight[f] == of) list.push_back(built.input_face[f]);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  };
+  const auto counting = std::count(weight.begin(), weight.end(), Weight::kCounts);
+  if (counting == built.mesh.face_count()) return;
+  std::vector<int> thin = polygons_of(Weight::kThin);
+  if (counting == 0 && !thin.empty())
+    refuse("thin_component", "The mesh is as thin as a hair: hundreds of thousands of times as long as wide.", "face", std::move(thin));
+  if (counting == 0) refuse("no_area", "No face of the mesh has an area.", "", {});
+  note("thin_component", "face", std::move(thin), "left out: hundreds of thousands of times as long as wide");
+  note("tiny_component", "face", polygons_of(Weight::kTiny), "left out: too small beside the rest for quads with an area");
+  built = part_that_counts(built, weight);
+}
+
+/// Vertices where the input has them.
+void MeshBuilder::put_back(BuiltMesh& built) const {
+  std::vector<Vector3> given;
+  given.reserve(built.input_vertex.size());
+  for (const int v : built.input_vertex) given.push_back(ordered_.soup.positions[v]);
+  built.mesh = std::move(built.mesh).with_positions(std::move(given));
 }
 
 BuiltMesh MeshBuilder::build(const RunContext& context) {
@@ -440,6 +449,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   resolve_faces(built);
   drop_negligible_components(built);
+  put_back(built);
   check_digits(built.mesh);
   for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
   for (int& f : built.input_face) f = ordered_.given_face[f];

@@ -72,12 +72,11 @@ std::vector<std::array<int, 2>> open_edges(const std::vector<std::array<int, 3>>
   return open;
 }
 
-std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
+std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 2>>& open) {
   struct OpenEdge {
     int low_place, high_place, low, high;
   };
   VertexSets sets(positions.size());
-  const auto open = open_edges(faces);
   if (!open.empty()) {
     const std::vector<int> place = places_of(positions);
     std::vector<OpenEdge> edges;

@@ -12,7 +12,8 @@ std::vector<int> places_of(const std::vector<Vector3>& positions);
 
 /// For every vertex the vertex it is to be merged into (itself if none). Ends of open edges are merged where another open
 /// edge lies exactly on them, so cracks of an unwelded mesh close while sheets that merely touch stay apart.
-std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);
+/// \param open  what open_edges() gives
+std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 2>>& open);
 
 /// The same for a soup of loose triangles whose corners differ by rounding: corners nearer than `tolerance` merge.
 std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance);
