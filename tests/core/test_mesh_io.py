@@ -286,6 +286,24 @@ def test_binary_stl_that_begins_as_a_text_does(tmp_path, filler):
         read_mesh(file_with(tmp_path, "a.stl", content[:-5]))
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("suffix", ["ply", "stl"])
+def test_bits_that_signal_are_read_in_silence(tmp_path, suffix):
+    # A single-precision number that is none, of the kind whose cast says so.
+    place = bytes.fromhex("0100807f") + struct.pack("<2f", 0, 0)
+    corners = place + struct.pack("<6f", 1, 0, 0, 0, 1, 0)
+    if suffix == "ply":
+        names = "".join(f"property float {axis}\n" for axis in "xyz")
+        head = f"ply\nformat binary_little_endian 1.0\nelement vertex 3\n{names}"
+        content = f"{head}element face 1\nproperty list uchar int vertex_index\nend_header\n".encode()
+        content += corners + struct.pack("<B3i", 3, 0, 1, 2)
+    else:
+        content = struct.pack("<80xI12x", 1) + corners + b"\0\0"
+    vertices, polygons = read_mesh(file_with(tmp_path, f"a.{suffix}", content))
+    assert np.isnan(vertices).sum() == 1
+    assert rows(polygons) == [[0, 1, 2]]
+
+
 def test_ply_text_with_carriage_returns(tmp_path):
     vertices, polygons = read_mesh(file_with(tmp_path, "a.ply", PLY.replace("\n", "\r")))
     assert len(vertices) == 5

@@ -84,7 +84,8 @@ def read_ply(data: bytes) -> tuple[FloatArray, IntRow, IntRow]:
         if element.name == "vertex":
             places = [_place_of(element, (axis,)) for axis in "xyz"]
             columns = rows.take(element, places)
-            vertices = np.stack([np.asarray(values, np.float64) for _, values in columns], axis=1)
+            with np.errstate(invalid="ignore"):  # bytes may be numbers that signal
+                vertices = np.stack([np.asarray(values, np.float64) for _, values in columns], axis=1)
         elif element.name == "face":
             faces += rows.take(element, [_place_of(element, _CORNERS)])
         elif element.name == strips:

@@ -12,6 +12,7 @@
 #include "hybrid_quad/improve/smoother.h"
 #include "hybrid_quad/improve/smoothing_options.h"
 #include "hybrid_quad/improve/spread_along_bends.h"
+#include "hybrid_quad/improve/tip_pulls.h"
 #include "hybrid_quad/improve/untangle.h"
 #include "hybrid_quad/improve/valence_moves.h"
 #include "hybrid_quad/improve/wedge_template.h"
@@ -69,7 +70,10 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
   bind(piece, context);
-  Smoother smoother(piece, smoothing_of(options, context.threads));
+  TipPulls tips(piece);
+  SmootherOptions smoothing = smoothing_of(options, context.threads);
+  smoothing.tips = &tips;
+  Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
   else

@@ -4,6 +4,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "hybrid_quad/improve/edit_mesh.h"
+#include "hybrid_quad/improve/quad_set.h"
 #include "hybrid_quad/improve/ring_pulls.h"
 
 namespace hybrid_quad {
@@ -28,5 +30,10 @@ class PointPulls {
   std::vector<Pull> pulls_;
   std::unordered_map<int, std::vector<int>> of_vertex_;
 };
+
+/// A point's pull at a quad. Half of it acts on the place nearest to the point, half on the quad as a whole: by the place alone a single
+/// corner gets ahead of the others, and the quad becomes a spike.
+/// \param place  on the quad, as it is  \param weight  of the squared distance, in edge lengths
+PointPulls::Pull pull_of_quad(const EditMesh& mesh, const QuadSet::Place& place, const Vector3& point, double weight);
 
 }  // namespace hybrid_quad

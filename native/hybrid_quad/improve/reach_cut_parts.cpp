@@ -50,26 +50,6 @@ Distances distances_of(const std::vector<Vector3>& points, const QuadSet& quads,
   return out;
 }
 
-/// Half of the pull acts on the place, half on the quad as a whole: by the place alone a single corner gets ahead of the others, and
-/// the quad becomes a spike.
-PointPulls::Pull pull_of(const EditMesh& mesh, const QuadSet::Place& place, const Vector3& point) {
-  constexpr double kOnWhole = 0.5;
-  PointPulls::Pull pull;
-  pull.point = point;
-  pull.vertices = mesh.quad(place.quad);
-  const int k = place.second;
-  const Vector3& a = mesh.positions[pull.vertices[0]];
-  const Vector3 b = mesh.positions[pull.vertices[k]] - a, c = mesh.positions[pull.vertices[k + 1]] - a, d = place.position - a;
-  const double bb = b.squaredNorm(), cc = c.squaredNorm(), bc = b.dot(c), determinant = bb * cc - bc * bc;
-  if (determinant > 0) {
-    pull.shares[k] = (cc * d.dot(b) - bc * d.dot(c)) / determinant;
-    pull.shares[k + 1] = (bb * d.dot(c) - bc * d.dot(b)) / determinant;
-  }
-  pull.shares[0] = 1 - pull.shares[k] - pull.shares[k + 1];
-  for (double& share : pull.shares) share = (1 - kOnWhole) * share + kOnWhole / 4;
-  return pull;
-}
-
 class Reaching {
  public:
   Reaching(Workpiece& piece, const FlawMeasure& measure, const ImproveOptions& options, std::vector<Witness> witnesses, int threads)
@@ -143,12 +123,12 @@ class Reaching {
       const QuadSet::Place place = set.nearest(p);
       if (place.distance < kNear * edge_of(piece_.mesh, place.quad)) continue;
       const int i = static_cast<int>(std::lower_bound(quads.begin(), quads.end(), place.quad) - quads.begin());
-      pulls.emplace_back(i, pull_of(piece_.mesh, place, p));
+      pulls.emplace_back(i, pull_of_quad(piece_.mesh, place, p, kWeight));
       ++count[i];
     }
     pulls_.clear();
     for (auto& [i, pull] : pulls) {
-      pull.weight = kWeight / count[i];
+      pull.weight /= count[i];
       pulls_.add(pull);
     }
   }

@@ -239,10 +239,18 @@ double Smoother::energy(int v, const Vector3& at, const Vector3* basis, int dime
   return sum;
 }
 
-GuidePull Smoother::guide_pull(int v, double size) const {
+/// What pulls at v, be it free or on a curve.
+GuidePull Smoother::pulls_at(int v, double size) const {
   GuidePull sum;
   if (options_.rings != nullptr) options_.rings->add_to(sum, v, piece_.mesh.positions, vertex_normal(v), size);
   if (options_.points != nullptr) options_.points->add_to(sum, v, piece_.mesh.positions, size);
+  if (options_.tips != nullptr) options_.tips->pulls().add_to(sum, v, piece_.mesh.positions, size);
+  return sum;
+}
+
+/// The same, and what guides ask of the edges at a free vertex.
+GuidePull Smoother::guide_pull(int v, double size) const {
+  GuidePull sum = pulls_at(v, size);
   if (guides_.empty()) return sum;
   const Vector3 own = guides_.at(v), normal = piece_.input.normal(piece_.face[v]);
   if (own.isZero(0)) return sum;
@@ -331,9 +339,7 @@ double Smoother::move_on_curve(int v, double size) {
     return stiffness * ((ahead - t) * (ahead - t) + (behind + t) * (behind + t));
   };
   before += spring(0);
-  GuidePull pulls;
-  if (options_.rings != nullptr) options_.rings->add_to(pulls, v, piece_.mesh.positions, vertex_normal(v), size);
-  if (options_.points != nullptr) options_.points->add_to(pulls, v, piece_.mesh.positions, size);
+  const GuidePull pulls = pulls_at(v, size);
   const double gradient = d.gradient[0] + 2 * stiffness * (behind - ahead) - 2 * pulls.pull.dot(tangent);
   double hessian = std::abs(d.hessian[0] + 4 * stiffness) + 2 * tangent.dot(pulls.stiffness * tangent);
   if (!(hessian > 0)) return 0;
@@ -377,6 +383,7 @@ void Smoother::smooth(int sweeps, const RunContext& context) {
   const std::vector<std::vector<int>> colours = vertices_by_colour(piece_.mesh);
   std::vector<char> active(n, 1), moved(n, 0);
   guides_.make_room();
+  if (options_.tips != nullptr) options_.tips->attach(piece_.mesh);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     context.checkpoint(static_cast<double>(sweep) / sweeps);
     update_frames(sweep == 0 || sweep == 4 || sweep == 12);

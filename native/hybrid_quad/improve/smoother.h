@@ -9,6 +9,7 @@
 #include "hybrid_quad/improve/corner_energy.h"
 #include "hybrid_quad/improve/point_pulls.h"
 #include "hybrid_quad/improve/ring_pulls.h"
+#include "hybrid_quad/improve/tip_pulls.h"
 #include "hybrid_quad/improve/vertex_guides.h"
 #include "hybrid_quad/improve/workpiece.h"
 
@@ -23,6 +24,7 @@ struct SmootherOptions {
   double guide_weight = 100;     ///< of the squared angle between an edge and a guide, against the corners' shape
   const RingPulls* rings = nullptr;  ///< may be null
   const PointPulls* points = nullptr;  ///< may be null
+  TipPulls* tips = nullptr;      ///< attached whenever all are smoothed; may be null
   int threads = 1;               ///< results do not depend on it
   double still = 0.005;          ///< a vertex that moves less (in edge lengths) lets its neighbours rest
 };
@@ -71,6 +73,7 @@ class Smoother {
   bool is_tangled() const;
   double energy(int v, const Vector3& at) const;
   double energy(int v, const Vector3& at, const Vector3* basis, int dimensions, Derivatives& derivatives) const;
+  GuidePull pulls_at(int v, double size) const;
   GuidePull guide_pull(int v, double size) const;
   double edge_size(int v) const;
   double move(int v);
