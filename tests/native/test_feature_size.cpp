@@ -81,5 +81,13 @@ TEST(FeatureSize, CountsQuads) {
   EXPECT_NEAR(quads_for_lengths(mesh, std::vector<double>(mesh.vertex_count(), 0.1)), 600, 1e-6);
 }
 
+TEST(FeatureSize, GradingAsksWhetherToGoOn) {
+  const TriangleMesh mesh = test::icosphere(7);
+  RunContext context;
+  context.stop_requested = [] { return true; };
+  std::vector<double> length(mesh.vertex_count(), 1.0);
+  EXPECT_THROW(grade_lengths(mesh, 2, length, 0.1, context), Cancelled);
+}
+
 }  // namespace
 }  // namespace hybrid_quad

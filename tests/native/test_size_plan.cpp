@@ -24,7 +24,7 @@ TEST(SizePlan, StretchesFreePartsForWhatNeedsMore) {
   std::vector<ComponentPlan> plans{plan(test::box(10, Vector3(4, 4, 0.2)), 0.4), plan(test::icosphere(4), 0.4)};
   const double before = plans[0].quads + plans[1].quads;
   const double asked = 0.85 * before;
-  balance_plans(plans, asked);
+  balance_plans(plans, asked, RunContext{});
   EXPECT_NEAR(plans[0].quads + plans[1].quads, asked, 0.02 * asked);
   for (const ComponentPlan& p : plans)
     for (const double t : p.target) EXPECT_LE(t, 1.6 * p.length + 1e-12);
@@ -43,10 +43,10 @@ TEST(SizePlan, ShortEdgesGiveWayOnlyWhereTheOthersCannot) {
   const ComponentPlan alone = plan(test::box(10, Vector3(4, 0.3, 0.2)), 0.5);
   const double asked = 0.5 * alone.quads;
   std::vector<ComponentPlan> plans{alone};
-  balance_plans(plans, asked);
+  balance_plans(plans, asked, RunContext{});
   EXPECT_LE(plans[0].quads, 1.02 * asked);
   std::vector<ComponentPlan> hopeless{alone};
-  balance_plans(hopeless, 1);
+  balance_plans(hopeless, 1, RunContext{});
   for (int v = 0; v < alone.mesh.vertex_count(); ++v) EXPECT_LE(hopeless[0].target[v], 2 * alone.length + 1e-12);
   EXPECT_GT(hopeless[0].quads, alone.quads / 4.1);
 }
@@ -54,14 +54,14 @@ TEST(SizePlan, ShortEdgesGiveWayOnlyWhereTheOthersCannot) {
 TEST(SizePlan, LeavesRoomySurfacesAlone) {
   std::vector<ComponentPlan> plans{plan(test::icosphere(4), 0.2)};
   const std::vector<double> before = plans[0].target;
-  balance_plans(plans, test::icosphere(4).total_area() / 0.04);
+  balance_plans(plans, test::icosphere(4).total_area() / 0.04, RunContext{});
   EXPECT_EQ(plans[0].target, before);
 }
 
 TEST(SizePlan, RefinesWhereTold) {
   const ComponentPlan coarse = plan(test::icosphere(4), 0.3);
   const Vector3 pole(0, 0, 1);
-  const ComponentPlan fine = refined_plan(coarse, 1.0, true, {{pole, 0.1}});
+  const ComponentPlan fine = refined_plan(coarse, 1.0, true, {{pole, 0.1}}, RunContext{});
   EXPECT_GT(fine.quads, coarse.quads);
   for (int v = 0; v < fine.mesh.vertex_count(); ++v) {
     EXPECT_LE(fine.target[v], coarse.target[v]);
@@ -72,15 +72,15 @@ TEST(SizePlan, RefinesWhereTold) {
       EXPECT_LT(fine.target[v], 0.15);
     }
   }
-  EXPECT_NEAR(refined_plan(coarse, 2.0, false, {}).quads, 2 * coarse.quads, 1e-6 * coarse.quads);
+  EXPECT_NEAR(refined_plan(coarse, 2.0, false, {}, RunContext{}).quads, 2 * coarse.quads, 1e-6 * coarse.quads);
 }
 
 TEST(SizePlan, ShorterEdgesAtPlacesAreNoReasonForMoreQuads) {
   const ComponentPlan coarse = plan(test::icosphere(4), 0.3);
-  const ComponentPlan finer = refined_plan(coarse, 1.0, false, {{Vector3(0, 0, 1), 0.05}});
+  const ComponentPlan finer = refined_plan(coarse, 1.0, false, {{Vector3(0, 0, 1), 0.05}}, RunContext{});
   EXPECT_NEAR(finer.quads, coarse.quads, 1e-6 * coarse.quads);
   EXPECT_NEAR(quads_for_lengths(finer.mesh, finer.target), coarse.quads, 0.01 * coarse.quads);
-  EXPECT_GT(refined_plan(coarse, 1.0, true, {{Vector3(0, 0, 1), 0.05}}).quads, coarse.quads);
+  EXPECT_GT(refined_plan(coarse, 1.0, true, {{Vector3(0, 0, 1), 0.05}}, RunContext{}).quads, coarse.quads);
 }
 
 TEST(SizePlan, FeaturesByAngleGiveWayAroundAPlace) {
@@ -209,7 +209,7 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   const auto features_for = [&](double quads, const MarkedEdges& marked) {
     std::vector<ComponentPlan> plans{
         plan_component(slab, std::sqrt(slab.total_area() / quads), marked, {}, Wishes{}, RemeshOptions{}, RunContext{})};
-    balance_plans(plans, quads);
+    balance_plans(plans, quads, RunContext{});
     make_room_for_count(plans, quads, 0, RunContext{});
     EXPECT_EQ(violations_of(plans[0].features, plans[0].mesh), std::vector<std::string>{});
     EXPECT_EQ(plans[0].given_way > 0, plans[0].features.curves.size() < 12);

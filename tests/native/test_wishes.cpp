@@ -129,7 +129,7 @@ TEST(Density, IsGradedAndNeverLowered) {
   std::vector<double> density(mesh.vertex_count(), 0.5);
   density[0] = 4;
   const std::vector<double> before = density;
-  grade_density(mesh, 1, 0.5, density);
+  grade_density(mesh, 1, 0.5, density, RunContext{});
   for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_GE(density[v], before[v]);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     EXPECT_LE(1 / density[mesh.to(h)], 1 / density[mesh.from(h)] + 0.5 * mesh.edge_length(h) + 1e-9);

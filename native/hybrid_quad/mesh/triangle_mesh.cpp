@@ -103,6 +103,23 @@ double TriangleMesh::diagonal() const {
   return (high - low).norm();
 }
 
+double TriangleMesh::extent() const {
+  Vector3 middle = Vector3::Zero();
+  double total = 0;
+  for (int f = 0; f < face_count(); ++f) {
+    const auto& v = faces_[f];
+    const double size = area(f);
+    middle += size / 3 * (positions_[v[0]] + positions_[v[1]] + positions_[v[2]]);
+    total += size;
+  }
+  if (!(total > 0)) return 0;
+  middle /= total;
+  double farthest2 = 0;
+  for (const auto& t : faces_)
+    for (const int v : t) farthest2 = std::max(farthest2, (positions_[v] - middle).squaredNorm());
+  return 2 * std::sqrt(farthest2);
+}
+
 int TriangleMesh::euler_characteristic() const {
   int vertices = 0, boundary_edges = 0;
   for (const int h : outgoing_) vertices += h >= 0;

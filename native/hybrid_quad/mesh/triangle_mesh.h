@@ -72,6 +72,8 @@ class TriangleMesh {
   double mean_edge_length() const;
   /// Length of the bounding box's diagonal.
   double diagonal() const;
+  /// Twice the distance of the vertex farthest from the middle of the surface: of a box its diagonal, and the same however a mesh is turned.
+  double extent() const;
   /// V - E + F, isolated vertices not counted.
   int euler_characteristic() const;
 

@@ -162,7 +162,7 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
     const ComponentPlan& plan = without_features ? fewer_features : is_rough ? *found.rough : planned;
     if (any && is_done(best, extracted, plan.quads)) break;
     const bool refined = !limits.empty() || settings.quads_factor != 1 || as_needed;
-    const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits) : ComponentPlan{};
+    const ComponentPlan finer = refined ? refined_plan(plan, settings.quads_factor, as_needed, limits, context) : ComponentPlan{};
     const double growth = refined ? std::max(settings.quads_factor, finer.quads / plan.quads) : 1;
     if (any && budget.left - growth * first_work < (needs_more ? 0 : reserve)) {
       best.gave_up = best.flawed_quads > 0;

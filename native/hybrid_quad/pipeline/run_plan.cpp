@@ -71,11 +71,11 @@ MarkedEdges marked_in(const Component& component, const RemeshDomain& domain) {
 /// The usual edge length where the caller says how long edges are to be, or how far from the surface; 0 where it is the
 /// number of quads that counts. \param chords  receives chord_lengths_on() each component
 double given_length(const std::vector<Component>& components, const std::vector<MarkedEdges>& marked,
-                    const RemeshOptions& options, double diagonal, std::vector<std::vector<double>>& chords,
+                    const RemeshOptions& options, double extent, std::vector<std::vector<double>>& chords,
                     const RunContext& context) {
   double quads = 0, area = 0;
   for (std::size_t i = 0; i < components.size(); ++i) {
-    chords.push_back(chord_lengths_on(components[i].mesh, marked[i].ends, options, diagonal, context));
+    chords.push_back(chord_lengths_on(components[i].mesh, marked[i].ends, options, extent, context));
     if (chords.back().empty()) continue;
     quads += quads_for_lengths(components[i].mesh, chords.back());
     area += components[i].mesh.total_area();
@@ -100,15 +100,15 @@ struct Sizes {
   bool is_by_count = false;
 };
 
-/// \param marked, chains  of each component  \param diagonal  of the whole surface
+/// \param marked, chains  of each component  \param extent  of the whole surface
 Sizes sizes_on(const std::vector<Component>& components, const std::vector<MarkedEdges>& marked,
-               const std::vector<std::vector<CountedChain>>& chains, const RemeshDomain& domain, double diagonal, int images,
+               const std::vector<std::vector<CountedChain>>& chains, const RemeshDomain& domain, double extent, int images,
                const RunContext& context) {
   const RemeshOptions& options = domain.options;
   const double area = domain.mesh.total_area();
   Sizes out;
   std::vector<std::vector<double>> chords;
-  const double given = given_length(components, marked, options, diagonal, chords, context);
+  const double given = given_length(components, marked, options, extent, chords, context);
   const double even_length = given > 0 ? given : std::sqrt(images * area / std::max(1, options.quads));
   double weighted_area = 0;  // at density 1
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -122,7 +122,7 @@ Sizes sizes_on(const std::vector<Component>& components, const std::vector<Marke
     out.plans.push_back(plan_component(components[i].mesh, length, marked[i], chains[i], out.wishes[i], options, context));
   out.is_by_count = !(given > 0);
   if (out.is_by_count) {
-    balance_plans(out.plans, out.wanted / images);
+    balance_plans(out.plans, out.wanted / images, context);
     make_room_for_count(out.plans, out.wanted / images, options.symmetry.planes, context);
   }
   for (std::size_t i = 0; i < out.plans.size(); ++i) out.plans[i].part = static_cast<int>(i);
@@ -187,7 +187,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
       chains.push_back(counts.chains_on(c.mesh, c.face, domain.counted_curve));
     }
     Sizes found = recalled(context.cache, {StageCache::Level::kPlan, "features and sizes"}, [&] {
-      return sizes_on(components, marked, chains, domain, built.mesh.diagonal(), images, plan_context);
+      return sizes_on(components, marked, chains, domain, built.mesh.extent(), images, plan_context);
     });
     for (std::size_t i = 0; i < components.size(); ++i) {
       const Component& c = components[i];

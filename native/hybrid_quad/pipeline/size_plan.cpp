@@ -68,20 +68,20 @@ struct Stretch {
   double limited = 1;    ///< where features and thin parts do
 };
 
-std::vector<double> stretched(const ComponentPlan& plan, const Stretch& stretch) {
+std::vector<double> stretched(const ComponentPlan& plan, const Stretch& stretch, const RunContext& context) {
   std::vector<double> longer = plan.target;
   for (std::size_t v = 0; v < longer.size(); ++v) {
     const double most = stretch.unlimited * plan.unlimited[v];
     longer[v] = longer[v] >= plan.unlimited[v] ? most : std::min(most, stretch.limited * longer[v]);
   }
   const double longest = stretch.unlimited * *std::max_element(plan.unlimited.begin(), plan.unlimited.end());
-  grade_lengths(plan.mesh, longest, longer, FeatureSizeOptions{}.growth * stretch.limited);
+  grade_lengths(plan.mesh, longest, longer, FeatureSizeOptions{}.growth * stretch.limited, context);
   return longer;
 }
 
 /// Lets curves that are to get more quads than fit have shorter ones. Longer ones need no finer triangles: the frames
 /// see to that. What would take quads a thousandth as long as usual is not asked for: the report tells that it is missed.
-void shorten_for_counts(ComponentPlan& plan) {
+void shorten_for_counts(ComponentPlan& plan, const RunContext& context) {
   constexpr double kLeast = 1e-3;
   bool any = false;
   for (FeatureCurve& curve : plan.features.curves) {
@@ -96,7 +96,9 @@ void shorten_for_counts(ComponentPlan& plan) {
     for (const int v : curve.vertices) plan.target[v] = std::min(plan.target[v], length / curve.asked_count);
     any = true;
   }
-  if (any) grade_lengths(plan.mesh, *std::max_element(plan.target.begin(), plan.target.end()), plan.target);
+  if (!any) return;
+  const double longest = *std::max_element(plan.target.begin(), plan.target.end());
+  grade_lengths(plan.mesh, longest, plan.target, FeatureSizeOptions{}.growth, context);
 }
 
 /// Everything about the lengths of edges that the features decide.
@@ -107,7 +109,7 @@ void plan_lengths(ComponentPlan& plan, PlaneSet mirror_planes, const RunContext&
   FeatureSizeOptions feature_size;
   feature_size.least_ratio = plan.least_ratio;
   plan.target = asked_lengths(*plan.index, plan.features, plan.length, plan.density, feature_size, context);
-  shorten_for_counts(plan);
+  shorten_for_counts(plan, context);
   plan.needed = plan.target;
   plan.quads = quads_for_lengths(plan.mesh, plan.target);
 }
@@ -121,23 +123,23 @@ std::vector<Vector3> crease_normals_of_parts(const TriangleMesh& whole, const st
   return normals;
 }
 
-double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch) {
+double quads_of(const std::vector<ComponentPlan>& plans, const Stretch& stretch, const RunContext& context) {
   double sum = 0;
-  for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, stretch));
+  for (const ComponentPlan& plan : plans) sum += quads_for_lengths(plan.mesh, stretched(plan, stretch, context));
   return sum;
 }
 
 /// The least stretch at which no more quads fit than were asked for, first of what is free to give way, then of the rest.
-Stretch least_stretch(const std::vector<ComponentPlan>& plans, double quads_asked) {
+Stretch least_stretch(const std::vector<ComponentPlan>& plans, double quads_asked, const RunContext& context) {
   constexpr double kPrecision = 1.005;
   Stretch stretch;
   const auto widen = [&](double& value, double most) {
     double low = value, high = most;
     value = high;
-    if (quads_of(plans, stretch) >= quads_asked) return false;
+    if (quads_of(plans, stretch, context) >= quads_asked) return false;
     while (high / low > kPrecision) {
       value = std::sqrt(low * high);
-      (quads_of(plans, stretch) > quads_asked ? low : high) = value;
+      (quads_of(plans, stretch, context) > quads_asked ? low : high) = value;
     }
     value = high;
     return true;
@@ -199,7 +201,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.given_way = plan.features.rounds_left_out;
   if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density, context);
   if (!plan.guides.empty()) add_guide_corners(plan);
-  plan.density = density_on(wishes, plan.mesh, plan.length);
+  plan.density = density_on(wishes, plan.mesh, plan.length, context);
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < plan.density.size(); ++v) plan.unlimited[v] = plan.length / plan.density[v];
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
@@ -208,12 +210,12 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   return plan;
 }
 
-void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked) {
+void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked, const RunContext& context) {
   constexpr double kEnough = 1.005;
-  if (quads_of(plans, Stretch{}) <= quads_asked * kEnough) return;
-  const Stretch stretch = least_stretch(plans, quads_asked);
+  if (quads_of(plans, Stretch{}, context) <= quads_asked * kEnough) return;
+  const Stretch stretch = least_stretch(plans, quads_asked, context);
   for (ComponentPlan& plan : plans) {
-    plan.target = stretched(plan, stretch);
+    plan.target = stretched(plan, stretch, context);
     plan.quads = quads_for_lengths(plan.mesh, plan.target);
   }
 }
@@ -223,7 +225,7 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
   for (ComponentPlan& plan : plans) any |= make_room(plan, context);
   if (!any) return false;
   for (ComponentPlan& plan : plans) plan_lengths(plan, mirror_planes, context);
-  balance_plans(plans, quads_asked);
+  balance_plans(plans, quads_asked, context);
   return true;
 }
 
@@ -268,7 +270,7 @@ void scale_plan(ComponentPlan& plan, double quads_factor) {
 }
 
 ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
-                           const std::vector<LengthLimit>& limits) {
+                           const std::vector<LengthLimit>& limits, const RunContext& context) {
   ComponentPlan finer = plan;
   finer.part = -1;
   const double factor = 1 / std::sqrt(quads_factor);
@@ -277,7 +279,7 @@ ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool 
   if (!limits.empty()) {
     const double longest = *std::max_element(finer.target.begin(), finer.target.end());
     limit_lengths(*finer.index, limits, finer.target);
-    grade_lengths(finer.mesh, longest, finer.target);
+    grade_lengths(finer.mesh, longest, finer.target, FeatureSizeOptions{}.growth, context);
   }
   finer.quads = quads_for_lengths(finer.mesh, finer.target);
   // Shorter edges at some places are paid for by the others.

@@ -56,7 +56,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
 /// Small features and thin parts need shorter edges than was asked: lengthens the others, in all components alike and by
 /// no more than three fifths, until as many quads fit as were asked for; where that is not enough, then lengthens the short
 /// ones too, by no more than twice.
-void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked);
+void balance_plans(std::vector<ComponentPlan>& plans, double quads_asked, const RunContext& context);
 
 /// Where features by angle leave no room for quads as large as the number asks for, because there are nearly as many curves
 /// as quads, those give way that crowd the most; lengths are planned and balanced anew.
@@ -88,6 +88,6 @@ void scale_plan(ComponentPlan& plan, double quads_factor);
 /// The plan for a number of quads that is larger by a factor, with shorter edges at some places.
 /// \param as_needed  nothing gives way for the number of quads, which is what it takes
 ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool as_needed,
-                           const std::vector<LengthLimit>& limits);
+                           const std::vector<LengthLimit>& limits, const RunContext& context);
 
 }  // namespace hybrid_quad

@@ -101,7 +101,7 @@ void multiply_by_curvature(const TriangleMesh& component, const std::vector<std:
   const FeatureGraph features = detect_features(component, asked, context);
   const std::vector<double> even(component.vertex_count(), usual_length);
   const WorkingSurface surface = build_working_surface(component, features, even, WorkingSurfaceOptions{}, context);
-  const std::vector<double> by_curvature = curvature_density(surface, component, usual_length, options.adaptivity);
+  const std::vector<double> by_curvature = curvature_density(surface, component, usual_length, options.adaptivity, context);
   for (int v = 0; v < component.vertex_count(); ++v) density[v] *= by_curvature[v];
 }
 
@@ -118,7 +118,7 @@ std::vector<double> density_of(const TriangleMesh& component, const std::vector<
   for (double& d : density) d = std::clamp(d, kLeastDensity, kMostDensity);
   for (std::size_t v = 0; v < chords.size(); ++v) density[v] *= usual_length / chords[v];
   if (by_curvature) multiply_by_curvature(component, marked, options, usual_length, density, context);
-  grade_density(component, usual_length, kGrowth, density);
+  grade_density(component, usual_length, kGrowth, density, context);
   return density;
 }
 
@@ -165,14 +165,14 @@ void add_directions(const TriangleMesh& component, const std::vector<int>& verte
 }
 
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
-                                     const RemeshOptions& options, double diagonal, const RunContext& context) {
-  constexpr double kLongest = 1 / 8.0, kLeast = 1 / 64.0;  // of the diagonal, and of the longest
+                                     const RemeshOptions& options, double extent, const RunContext& context) {
+  constexpr double kLongest = 1 / 8.0, kLeast = 1 / 64.0;  // of the extent, and of the longest
   if (!(options.chord_error > 0)) return {};
   ChordOptions chord;
   chord.error = options.chord_error;
-  chord.longest = options.edge_length > 0 ? options.edge_length : kLongest * diagonal;
+  chord.longest = options.edge_length > 0 ? options.edge_length : kLongest * extent;
   chord.least = kLeast * chord.longest;
-  chord.start = std::sqrt(options.chord_error * diagonal);  // right where the radius is an eighth of the diagonal
+  chord.start = std::sqrt(options.chord_error * extent);  // right where the radius is an eighth of the extent
   FeatureOptions asked = feature_options(options, std::min(chord.start, chord.longest));
   asked.marked_edges = marked;
   return chord_lengths(component, detect_features(component, asked, context), chord, context);
@@ -187,7 +187,7 @@ FeatureOptions feature_options(const RemeshOptions& options, double length) {
   return features;
 }
 
-std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, double length) {
+std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, double length, const RunContext& context) {
   if (wishes.density.empty()) return {};
   const TriangleMesh& mesh = wishes.index->mesh();
   std::vector<double> density = wishes.density;  // the vertices of both come first
@@ -198,7 +198,7 @@ std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, 
     for (int i = 0; i < 3; ++i) log_density += weight[i] * std::log(wishes.density[mesh.face(f)[i]]);
     density.push_back(std::exp(log_density));
   }
-  grade_density(finer, length, kGrowth, density);
+  grade_density(finer, length, kGrowth, density, context);
   return density;
 }
 

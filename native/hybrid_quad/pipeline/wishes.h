@@ -38,9 +38,9 @@ Wishes wishes_on(const TriangleMesh& component, const std::vector<int>& vertex, 
 void add_directions(const TriangleMesh& component, const std::vector<int>& vertex, const std::vector<int>& face,
                     const BuiltMesh& built, const RemeshOptions& options, Wishes& wishes);
 
-/// Lengths for options.chord_error. \param diagonal  of the whole surface  \return #V; empty where no such error is asked
+/// Lengths for options.chord_error. \param extent  of the whole surface  \return #V; empty where no such error is asked
 std::vector<double> chord_lengths_on(const TriangleMesh& component, const std::vector<std::array<int, 2>>& marked,
-                                     const RemeshOptions& options, double diagonal, const RunContext& context);
+                                     const RemeshOptions& options, double extent, const RunContext& context);
 
 /// A working surface on which the shorter side of the most anisotropic quad is resolved, and coarser for many quads, unless
 /// hard guides or lengths that are to vary need it finer (docs/decisions/0045).
@@ -51,7 +51,7 @@ WorkingSurfaceOptions working_surface_options(const Wishes& wishes, double quads
 FeatureOptions feature_options(const RemeshOptions& options, double length);
 
 /// The density on a finer mesh of the component, graded for quads of `length`. \return #V or empty
-std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, double length);
+std::vector<double> density_on(const Wishes& wishes, const TriangleMesh& finer, double length, const RunContext& context);
 
 /// The guides on a finer mesh of the component.
 GuideMap guides_on(const Wishes& wishes, const TriangleMesh& finer);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <limits>
 
 namespace hybrid_quad {
 
@@ -69,7 +69,8 @@ void smooth_over_faces(const TriangleMesh& mesh, std::vector<double>& value) {
 
 }  // namespace
 
-std::vector<double> curvature_density(const WorkingSurface& surface, const TriangleMesh& mesh, double length, double adaptivity) {
+std::vector<double> curvature_density(const WorkingSurface& surface, const TriangleMesh& mesh, double length, double adaptivity,
+                                      const RunContext& context) {
   constexpr double kGrowth = 0.3;
   const std::vector<PrincipalCurvature> curvature = principal_curvatures(surface);
   const ChordDensity chord(surface.mesh, curvature);
@@ -82,33 +83,14 @@ std::vector<double> curvature_density(const WorkingSurface& surface, const Trian
     const int face = index.nearest(mesh.position(v)).face;
     if (face >= 0) density[v] = std::exp(log_density[face]);
   }
-  grade_density(mesh, length, kGrowth, density);
+  grade_density(mesh, length, kGrowth, density, context);
   return density;
 }
 
-void grade_density(const TriangleMesh& mesh, double length, double growth, std::vector<double>& density) {
-  using Entry = std::pair<double, int>;  // asked length, vertex; shortest first
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+void grade_density(const TriangleMesh& mesh, double length, double growth, std::vector<double>& density, const RunContext& context) {
   std::vector<double> asked(density.size());
-  for (int v = 0; v < mesh.vertex_count(); ++v) queue.emplace(asked[v] = length / density[v], v);
-  while (!queue.empty()) {
-    const auto [here, v] = queue.top();
-    queue.pop();
-    if (here > asked[v] || mesh.outgoing(v) < 0) continue;
-    const double at = here;
-    const auto offer = [&](int w, double distance) {
-      const double reached = at + growth * distance;
-      if (reached < asked[w]) queue.emplace(asked[w] = reached, w);
-    };
-    const int first = mesh.outgoing(v);
-    for (int h = first; h >= 0;) {
-      offer(mesh.to(h), mesh.edge_length(h));
-      const int in = TriangleMesh::previous(h);
-      if (mesh.is_boundary(in)) offer(mesh.from(in), mesh.edge_length(in));
-      h = mesh.rotate_ccw(h);
-      if (h == first) break;
-    }
-  }
+  std::transform(density.begin(), density.end(), asked.begin(), [length](double d) { return length / d; });
+  grade_lengths(mesh, std::numeric_limits<double>::infinity(), asked, growth, context);
   for (std::size_t v = 0; v < density.size(); ++v) density[v] = std::max(density[v], length / asked[v]);
 }
 

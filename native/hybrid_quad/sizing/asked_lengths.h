@@ -16,11 +16,12 @@ constexpr double kMostDensity = 10, kLeastDensity = 0.1;
 /// \param surface  of even size `length`
 /// \param adaptivity  0: even, 1: as above; between them the lengths' logarithms are blended
 /// \return #V of `mesh`, which `surface` was made of
-std::vector<double> curvature_density(const WorkingSurface& surface, const TriangleMesh& mesh, double length, double adaptivity);
+std::vector<double> curvature_density(const WorkingSurface& surface, const TriangleMesh& mesh, double length, double adaptivity,
+                                      const RunContext& context);
 
 /// The least density above the given one for which lengths, length / density, grow by at most `growth` over a unit of distance.
 /// \param density  #V, changed
-void grade_density(const TriangleMesh& mesh, double length, double growth, std::vector<double>& density);
+void grade_density(const TriangleMesh& mesh, double length, double growth, std::vector<double>& density, const RunContext& context);
 
 /// Integral of density^2: the area at density 1 that asks for as many quads. \param density #V; empty: 1 everywhere
 double area_by_density(const TriangleMesh& mesh, const std::vector<double>& density);

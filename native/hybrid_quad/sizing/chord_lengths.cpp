@@ -45,7 +45,7 @@ std::vector<double> chord_lengths(const TriangleMesh& mesh, const FeatureGraph& 
       const int face = index.nearest(mesh.position(v)).face;
       length[v] = face >= 0 ? asked[face] : options.longest;
     }
-    grade_lengths(mesh, options.longest, length, kGrowth);
+    grade_lengths(mesh, options.longest, length, kGrowth, context);
   }
   return length;
 }

@@ -24,12 +24,14 @@ void visit_edges(const TriangleMesh& mesh, Visit visit) {
 /// Propagates values over edges, smallest first: `step(value, edge length)` is what a neighbour gets at most.
 /// \param label  handed on with the value where not empty
 void propagate(const TriangleMesh& mesh, std::vector<double>& value, std::vector<int>& label, double stop,
-               const std::function<double(double, double)>& step) {
+               const std::function<double(double, double)>& step, const RunContext& context) {
+  constexpr unsigned kStepsUnasked = 1u << 16;  // a few hundredths of a second
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (value[v] < stop) queue.emplace(value[v], v);
-  while (!queue.empty()) {
+  for (unsigned steps = 1; !queue.empty(); ++steps) {
+    if (steps % kStepsUnasked == 0) context.checkpoint();
     const double at = queue.top().first;  // no structured binding: C++17 does not let lambdas take these
     const int v = queue.top().second;
     queue.pop();
@@ -91,7 +93,7 @@ std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const Featu
     }
   }
   context.checkpoint(0.3);
-  propagate(mesh, distance, nearest, length, [](double at, double edge) { return at + edge; });
+  propagate(mesh, distance, nearest, length, [](double at, double edge) { return at + edge; }, context);
   visit_edges(mesh, [&](int h) {
     const int a = mesh.from(h), b = mesh.to(h);
     if (nearest[a] < 0 || nearest[b] < 0 || nearest[a] == nearest[b]) return;
@@ -103,7 +105,7 @@ std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const Featu
   });
   context.checkpoint(0.5);
   limit_lengths_of_thin_parts(index, length, options.least_ratio, target, context);
-  grade_lengths(mesh, length, target, options.growth);
+  grade_lengths(mesh, length, target, options.growth, context);
   return target;
 }
 
@@ -115,9 +117,9 @@ void limit_lengths(const SurfaceIndex& index, const std::vector<LengthLimit>& li
   }
 }
 
-void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth) {
+void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth, const RunContext& context) {
   std::vector<int> none;
-  propagate(mesh, length, none, longest, [&](double at, double edge) { return at + growth * edge; });
+  propagate(mesh, length, none, longest, [&](double at, double edge) { return at + growth * edge; }, context);
 }
 
 double quads_for_lengths(const TriangleMesh& mesh, const std::vector<double>& length) {

@@ -29,7 +29,7 @@ std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const Featu
 void limit_lengths(const SurfaceIndex& index, const std::vector<LengthLimit>& limits, std::vector<double>& length);
 
 /// Lets lengths (#V) of up to `longest` grow no faster than that with the distance.
-void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth = FeatureSizeOptions{}.growth);
+void grade_lengths(const TriangleMesh& mesh, double longest, std::vector<double>& length, double growth, const RunContext& context);
 
 /// Number of quads that fit: integral of 1 / h^2 (h is linear in each face; one point a face).
 double quads_for_lengths(const TriangleMesh& mesh, const std::vector<double>& length);
