@@ -22,8 +22,9 @@ from comparison import Case, Result, from_outcome, from_stored, page
 from hybrid_quad.core.mesh_arrays import surface_area
 from hybrid_quad.core.mesh_io import read_mesh
 from judging import judged
+from measuring import measure
 from results import append_row, build_id, read_results
-from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, measure, run_and_judge
+from runs import COLLECTION, JUDGE, ROOT, Limits, Outcome, Run, run_and_judge
 from stored_peers import PEERS, QUADS, stored_results
 
 SCRIPTS = Path(__file__).resolve().parent / "peers"

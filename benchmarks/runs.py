@@ -6,16 +6,11 @@ import atexit
 import csv
 import functools
 import json
-import math
-import os
-import resource
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -24,6 +19,7 @@ from typing import Any
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import topology, violations
 from judging import SAMPLED_CHECK, judged
+from measuring import measure
 
 ROOT = Path(__file__).resolve().parent.parent
 COLLECTION = ROOT.parent / "shared" / "meshes" / "dev"
@@ -191,66 +187,6 @@ def models_of(folder: Path) -> Iterator[tuple[Path, bool]]:
     with index.open() as file:
         for row in csv.DictReader(file):
             yield folder / f"{row['name']}.obj", row.get("edge_mf") == row.get("vert_mf") == "y"
-
-
-@dataclass
-class Measured:
-    """What a program took."""
-
-    status: str  # "ok", "failed", "crash" or "timeout"
-    message: str
-    seconds: float
-    cpu_seconds: float
-    peak_mb: float
-
-
-def measure(
-    command: list[str],
-    seconds: float,
-    memory_mb: int,
-    cpu_seconds: float | None = None,
-    environment: Mapping[str, str] | None = None,
-) -> Measured:
-    """Runs a program with limits (`memory_mb` 0: none), and takes the system's account of it."""
-
-    def limit() -> None:
-        if memory_mb > 0:
-            resource.setrlimit(resource.RLIMIT_AS, (memory_mb << 20, memory_mb << 20))
-        if cpu_seconds is not None:
-            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(cpu_seconds), math.ceil(cpu_seconds) + 5))
-
-    begin = time.monotonic()
-    with subprocess.Popen(
-        command,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        preexec_fn=limit,
-        env=environment,
-    ) as process:
-        assert process.stderr is not None
-        timed_out = False
-        while True:
-            pid, wait_status, usage = os.wait4(process.pid, os.WNOHANG)
-            if pid:
-                break
-            if not timed_out and time.monotonic() - begin > seconds:
-                timed_out = True
-                process.kill()
-            time.sleep(0.01)
-        elapsed = time.monotonic() - begin
-        process.returncode = os.waitstatus_to_exitcode(wait_status)
-        message = process.stderr.read().strip()
-    if timed_out:
-        status = "timeout"
-    elif process.returncode == -signal.SIGXCPU:
-        status, message = "timeout", f"more than {cpu_seconds:g} s of the processor"
-    elif process.returncode < 0:
-        status, message = "crash", f"signal {-process.returncode} {message}"
-    else:
-        status = "failed" if process.returncode else "ok"
-    return Measured(status, message[-2000:], elapsed, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
 _WHOLE_MESH = {"empty_mesh", "no_area", "malformed_faces", "coordinates_too_coarse"}  # no element of it is at fault

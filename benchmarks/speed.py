@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import shlex
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+
+from measuring import measure
 
 PEERS = Path(__file__).resolve().parent / "peers"
 OURS = "hybrid-quad remesh {source} {target} --quads {quads} --no-sharp --quiet"
@@ -72,12 +71,8 @@ def run(name: str, command: str, model: Path, quads: int, time_limit: float) -> 
         target = Path(folder) / "out.obj"
         words = [w.format(source=model, quads=quads, target=target) for w in shlex.split(command)]
         log = Path(folder) / "log"
-        begin = time.perf_counter()
         with log.open("w") as output:
-            process = subprocess.Popen(["timeout", str(time_limit), *words], stdout=output, stderr=subprocess.STDOUT)
-            _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        seconds = time.perf_counter() - begin
+            measured = measure(words, time_limit, memory_mb=0, output=output)
         faces = 0
         if target.exists():
             with target.open() as file:
@@ -86,9 +81,9 @@ def run(name: str, command: str, model: Path, quads: int, time_limit: float) -> 
         for line in log.read_text(errors="replace").splitlines():
             if line.startswith('{"call_seconds"'):
                 call = json.loads(line)
-        cpu = usage.ru_utime + usage.ru_stime
-        ok = process.returncode == 0 and faces > 0
-        return Timing(name, model.stem, quads, ok, seconds, cpu, usage.ru_maxrss / 1024, faces, **call)
+        ok = measured.status == "ok" and faces > 0
+        took = (measured.seconds, measured.cpu_seconds, measured.peak_mb)
+        return Timing(name, model.stem, quads, ok, *took, faces, **call)
 
 
 def table(timings: list[Timing], programs: list[str]) -> str:
