@@ -91,8 +91,9 @@ def main() -> int:
     outcomes = [as_expected(done[run.name], run.refusal) for run in runs]
     (out / "sweep.csv").write_text(table.as_csv(outcomes))
     (out / "sweep.md").write_text(table.as_markdown(outcomes))
+    (out / "sweep_short.md").write_text(table.as_short_markdown(outcomes))
     print("\n".join(table.summary(outcomes)))
-    print(f"tables: {out / 'sweep.csv'}, {out / 'sweep.md'}")
+    print(f"tables: {out / 'sweep.csv'}, {out / 'sweep.md'}, {out / 'sweep_short.md'}")
     return 0 if all(outcome.is_good for outcome in outcomes) else 1
 
 

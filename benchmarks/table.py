@@ -101,6 +101,17 @@ def as_markdown(outcomes: Sequence[Outcome]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def as_short_markdown(outcomes: Sequence[Outcome]) -> str:
+    """A row for each run that tells only what it came to and what it took, for a page."""
+    lines = ["| model | outcome | quads | CPU s | peak MB |", "|---|---|--:|--:|--:|"]
+    for outcome in outcomes:
+        code = refusal_code(outcome) if outcome.status in ("refused", "wrongly refused") else ""
+        told = f"{outcome.status}: `{code}`" if code else outcome.status
+        quads = outcome.report.get("quads", "") if outcome.has_mesh else ""
+        lines.append(f"| {outcome.model} | {told} | {quads} | {outcome.cpu_seconds:.1f} | {outcome.peak_mb:.0f} |")
+    return "\n".join(lines) + "\n"
+
+
 def summary(outcomes: Sequence[Outcome]) -> list[str]:
     """A few lines for a person: how many are valid, and what is wrong with the others."""
     valid = sum(outcome.status == "valid" for outcome in outcomes)

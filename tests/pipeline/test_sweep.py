@@ -196,6 +196,10 @@ def test_refusals_are_those_that_are_expected(root, tmp_path):
     page = (out / "sweep.md").read_text()
     assert "| refused | wrongly refused | not refused | other |" in page
     assert "| 100 | default | 2 | 1 | 0 | 1 | 0 | 0 | 0 |" in page
+    head, _, *short = (out / "sweep_short.md").read_text().splitlines()
+    assert head == "| model | outcome | quads | CPU s | peak MB |"
+    assert short[0].startswith("| moebius | refused: `non_orientable` |  | 0.")
+    assert re.fullmatch(r"\| torus \| valid \| \d+ \| \d+\.\d \| \d+ \|", short[1])
     assert "for non_orientable: 1" in page
     # What is stored is held against the table as it is now.
     assert "2 runs, 0 to do" in sweep(root, out, *arguments).stdout
