@@ -170,7 +170,7 @@ def remesh(
         0: edges of even length, 1: as short as the curvature asks for.
     chord_error : float, optional
         Instead of `quads` and `adaptivity`: the largest distance between quads and the surface that is aimed at, in the
-        units of `vertices`. `edge_length` then bounds the edges; without one, an eighth of the diagonal does.
+        units of `vertices`. `edge_length` then bounds the edges; without one, an eighth of the extent does.
     narrow_quads : int, 1 or 2
         Rows of quads that strips between two features get at least, unless two were slivers.
     anisotropy : float

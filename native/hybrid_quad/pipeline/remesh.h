@@ -48,7 +48,7 @@ struct RemeshOptions {
   double field_smoothness = 0.5;   ///< 0: edges follow the surface's bends, 1: as few singularities as can be
   double adaptivity = 0;           ///< 0: even, 1: edges as short as the surface's curvature asks for
   /// Largest distance that quads may have from the surface (scene units); 0: none. Sets the lengths by the curvature, in
-  /// place of `quads` and `adaptivity`; edge_length is then the longest edge, an eighth of the diagonal where not given.
+  /// place of `quads` and `adaptivity`; edge_length is then the longest edge, an eighth of the extent (TriangleMesh::extent) where not given.
   double chord_error = 0;
   double anisotropy = 1;           ///< most by which quads are stretched along the direction that bends less
   int narrow_quads = 2;            ///< rows of quads, 1 or 2, that a strip between two features gets, however narrow
