@@ -1,6 +1,5 @@
 """The command as scripts see it: exit status, files and messages."""
 
-import contextlib
 import errno
 import json
 import os
@@ -15,9 +14,9 @@ import numpy as np
 import pytest
 
 import hybrid_quad
-from hybrid_quad.cli import exit_codes
+from hybrid_quad.cli import exit_codes, remesh_command
 from hybrid_quad.cli.main import main
-from hybrid_quad.core.file_places import replacing
+from hybrid_quad.core.held_signals import signals_held
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import violations
 from support import surfaces
@@ -377,8 +376,6 @@ def test_a_memory_limit_that_is_reached_in_the_middle_of_a_run(tmp_path):
 
 
 def test_a_machine_without_memory(tmp_path, torus, capfd, monkeypatch):
-    from hybrid_quad.cli import remesh_command
-
     def fail(*_, **__):
         raise MemoryError
 
@@ -413,31 +410,94 @@ def test_a_write_that_fails_halfway_leaves_the_old_result(tmp_path, torus, more)
 
 @pytest.mark.parametrize("is_held", [True, False])
 def test_a_result_that_cannot_be_written_is_no_success_in_the_report(tmp_path, torus, monkeypatch, is_held):
-    from hybrid_quad.core import held_mesh, mesh_io
+    from hybrid_quad.core import mesh_io
 
     def fail(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    out, report = tmp_path / ("out.obj" if is_held else "out.ply"), tmp_path / "report.json"
+    out = tmp_path / ("out.obj" if is_held else "out.ply")
+    report, picture = tmp_path / "report.json", tmp_path / "p.png"
     out.write_text("old result")
+    picture.write_text("old picture")
     if is_held:
-        monkeypatch.setattr(held_mesh, "replacing", lambda path: failing(path, fail))
+        monkeypatch.setattr(remesh_command, "write_held", while_writing(fail))
     else:
         monkeypatch.setattr(mesh_io, "_write_ply", fail)
-    arguments = ["remesh", torus, str(out), "--quads", "100", "--report", str(report)]
+    arguments = ["remesh", torus, str(out), "--quads", "100", "--report", str(report), "--picture", str(picture)]
     assert main(arguments) == exit_codes.WRONG_USAGE
     made = json.loads(report.read_text())
     assert (made["status"], made["code"]) == ("unwritable_file", "unwritable_file")
     assert made["message"] == f"{out}: No space left on device"
     assert out.read_text() == "old result"
+    assert picture.read_text() == "old picture"
 
 
-@contextlib.contextmanager
-def failing(path, fail):
-    """A file in the place of another that takes nothing."""
-    with replacing(path) as file:
-        fail()
-        yield file
+def while_writing(act):
+    """A writer of results that does something else when half of the file is there."""
+
+    def write(path, _result, files):
+        with files.replacing(path) as file:
+            file.write(b"half")
+            act()
+
+    return write
+
+
+ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
+
+@pytest.fixture
+def own_signals():
+    """Has a test answer signals in its own process, as a command does in its."""
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in ENDING}
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_signal_while_the_result_is_written_ends_the_run(tmp_path, torus, capfd, monkeypatch, own_signals, number):
+    monkeypatch.setattr(remesh_command, "write_held", while_writing(lambda: signal.raise_signal(number)))
+    out = tmp_path / "out.obj"
+    out.write_text("old result")
+    unchanged(tmp_path, ["remesh", torus, str(out), "--quads", "100"], exit_codes.CANCELLED)
+    assert "nothing was written" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_signal_while_files_are_put_in_place_cuts_nothing_in_two(tmp_path, torus, monkeypatch, own_signals, number):
+    put = os.replace
+
+    def put_and_signal(*places):
+        put(*places)
+        signal.raise_signal(number)
+
+    monkeypatch.setattr(os, "replace", put_and_signal)
+    out, report, picture = tmp_path / "out.obj", tmp_path / "report.json", tmp_path / "p.png"
+    arguments = ["remesh", torus, str(out), "--quads", "100", "--report", str(report), "--picture", str(picture)]
+    assert main(arguments) == exit_codes.OK
+    assert json.loads(report.read_text())["status"] == "ok"
+    assert out.stat().st_size and picture.stat().st_size
+    assert {path.name for path in tmp_path.iterdir()} == {"torus.obj", "out.obj", "report.json", "p.png"}
+
+
+def test_signals_that_are_held_come_afterwards_unless_nobody_heeds_them(own_signals):
+    with pytest.raises(KeyboardInterrupt), signals_held() as came:
+        signal.raise_signal(signal.SIGINT)
+        assert came == [signal.SIGINT]
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with signals_held() as came:
+        signal.raise_signal(signal.SIGINT)
+    assert came == []
+    assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals of POSIX")
+def test_the_end_of_the_terminal_is_ignored_where_it_was(torus, own_signals):
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    assert main(["check", torus]) == exit_codes.OK
+    assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder in which nobody may make files")
@@ -508,6 +568,23 @@ def test_a_folder_that_cannot_be_written_to_is_noticed_at_once(nobody):
         assert child.returncode == exit_codes.WRONG_USAGE, child.stderr
         assert "cannot be written to" in child.stderr
         assert not any(Path(folder).iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions of POSIX")
+@pytest.mark.parametrize("protected", ["out.obj", "report.json", "p.png"])
+def test_a_write_protected_file_is_not_replaced(nobody, protected):
+    """Which the owner of its folder could; noticed before the input, which is not there, is looked at."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o777)
+        place = Path(folder) / protected
+        place.write_text("old")
+        place.chmod(0o444)
+        more = ["--report", f"{folder}/report.json", "--picture", f"{folder}/p.png"]
+        asked = on_one_thread("remesh", f"{folder}/none.obj", f"{folder}/out.obj", *more)
+        child = subprocess.run(asked, **nobody, capture_output=True, text=True, check=False)
+        assert child.returncode == exit_codes.WRONG_USAGE, child.stderr
+        assert f"{place}: is write-protected" in child.stderr
+        assert [path.name for path in Path(folder).iterdir()] == [protected]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")

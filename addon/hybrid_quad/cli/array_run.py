@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable
 
 from ..core import mesh_io, wish_files
-from ..core.file_places import MeshFileError
+from ..core.file_places import FilesTogether, MeshFileError
 from ..core.mesh_arrays import FloatArray, Polygons
 from ..core.options import STROKE_KINDS, RemeshOptions
 from ..core.part_files import read_part, write_polygons
@@ -49,12 +49,19 @@ def remesh_arrays(
     return result, _joined_mesh(vertices, polygons, result)
 
 
-def write_arrays(path: str, result: RemeshResult, mesh: PartRemesh | None) -> None:
-    """What :func:`remesh_arrays` gave, to a file."""
+def write_arrays(
+    path: str, result: RemeshResult, mesh: PartRemesh | None, together: FilesTogether | None = None
+) -> None:
+    """What :func:`remesh_arrays` gave, to a file that may take its place together with others.
+
+    Raises
+    ------
+    MeshFileError
+    """
     if mesh is None:
-        mesh_io.write_mesh(path, result.vertices, result.quads)
+        mesh_io.write_mesh(path, result.vertices, result.quads, together)
     else:
-        write_polygons(path, mesh.vertices, mesh.faces)
+        write_polygons(path, mesh.vertices, mesh.faces, together)
 
 
 def _part_solver(

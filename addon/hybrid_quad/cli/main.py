@@ -39,9 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:  # the help, which nobody took
         say(name_and_reason(error))
         return exit_codes.WRONG_USAGE
-    with contextlib.suppress(ValueError):  # not in the main thread, where handlers cannot be set
-        # A job scheduler's "terminate" is answered like Ctrl-C.
-        signal.signal(signal.SIGTERM, _interrupt)
+    _heed_signals()
     try:
         return int(options.run(options))
     except InputError as error:
@@ -68,6 +66,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "hybrid-quad case packs all of that into one file, and leaves names out if asked."
         )
         return exit_codes.BUG
+
+
+def _heed_signals() -> None:
+    """Has a job scheduler's "terminate", and the end of the terminal, answered like Ctrl-C."""
+    with contextlib.suppress(ValueError):  # not in the main thread, where alone handlers can be set
+        signal.signal(signal.SIGTERM, _interrupt)
+        if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # as under nohup it is not
+            signal.signal(signal.SIGHUP, _interrupt)
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> None:

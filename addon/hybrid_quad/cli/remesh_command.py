@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -56,33 +55,37 @@ def run(arguments: argparse.Namespace) -> int:
     options = options_of(arguments)
     check_writable(arguments.output)
     _check_files(arguments)
+    files = file_places.FilesTogether()
     try:
         result, mesh = _remesh(arguments, options, started)
-        if arguments.picture:
-            from ..core import picture
-
-            picture.write_picture(arguments.picture, result.vertices, result.quads)
-        _write(arguments, result, mesh)
+        _write(arguments, result, mesh, files)
+        _tell(arguments, result, started)
     except OSError as error:  # of a folder of stages: what else is read or written has errors of its own
         problem = file_places.UnwritableFileError(file_places.name_and_reason(error))
         _write_failure(arguments, options, problem)
         raise problem from error
     except (KeyboardInterrupt, Exception) as error:
+        if files.are_in_place and isinstance(error, KeyboardInterrupt):
+            return exit_codes.OK  # too late: all is done
         _write_failure(arguments, options, error)
         raise
-    if not arguments.quiet:
-        for defect in result.report["defects"]:
-            say(f"{what_became_of(defect)} {describe_defect(defect)}")
-        if result.report["symmetry"]["deviation_percent"]:
-            say(describe_symmetry(result.report["symmetry"]))
-        for warning in result.report["warnings"]:
-            say(f"warning: {warning}")
-        seconds = time.monotonic() - started
-        say(
-            f"{arguments.output}: {result.report['quads']} quads, {result.report['irregular_vertices']} irregular vertices, "
-            f"scaled Jacobian {result.report['scaled_jacobian']['mean']:.3f} in the mean, {seconds:.1f} s"
-        )
     return exit_codes.OK
+
+
+def _tell(arguments: argparse.Namespace, result: HeldQuads | RemeshResult, started: float) -> None:
+    if arguments.quiet:
+        return
+    for defect in result.report["defects"]:
+        say(f"{what_became_of(defect)} {describe_defect(defect)}")
+    if result.report["symmetry"]["deviation_percent"]:
+        say(describe_symmetry(result.report["symmetry"]))
+    for warning in result.report["warnings"]:
+        say(f"warning: {warning}")
+    seconds = time.monotonic() - started
+    say(
+        f"{arguments.output}: {result.report['quads']} quads, {result.report['irregular_vertices']} irregular vertices, "
+        f"scaled Jacobian {result.report['scaled_jacobian']['mean']:.3f} in the mean, {seconds:.1f} s"
+    )
 
 
 def _check_files(arguments: argparse.Namespace) -> None:
@@ -115,36 +118,27 @@ def _remesh(
     return result, None
 
 
-def _write(arguments: argparse.Namespace, result: HeldQuads | RemeshResult, mesh: PartRemesh | None) -> None:
-    # Where one of the two cannot be written, neither the result nor a report that says "ok" must be left behind: the
-    # report is put in its place, which hardly fails, when all of it is on the disk and the result in its own. A signal
-    # that comes while files are put in place would leave one of the two; it is held back for these few milliseconds.
-    held = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        for number in held:
-            signal.signal(number, signal.SIG_IGN)
-    except ValueError:
-        held = {}  # not in the main thread, which alone is interrupted
-    try:
-        if arguments.report:
-            with file_places.replacing(arguments.report) as file:
-                file.write(report.as_text(result.report).encode())
-                file_places.put_on_disk(file)
-                _write_result(arguments.output, result, mesh)
+def _write(
+    arguments: argparse.Namespace,
+    result: HeldQuads | RemeshResult,
+    mesh: PartRemesh | None,
+    files: file_places.FilesTogether,
+) -> None:
+    """All that the run gives, put in place together: no result without its report, and no report of success without one."""
+    with files:
+        if isinstance(result, HeldQuads):
+            write_held(arguments.output, result, files)
         else:
-            _write_result(arguments.output, result, mesh)
-    finally:
-        for number, handler in held.items():
-            signal.signal(number, handler)
+            from .array_run import write_arrays
 
+            write_arrays(arguments.output, result, mesh, files)
+        if arguments.picture:
+            from ..core import picture
 
-def _write_result(path: str, result: HeldQuads | RemeshResult, mesh: PartRemesh | None) -> None:
-    if isinstance(result, HeldQuads):
-        write_held(path, result)
-    else:
-        from .array_run import write_arrays
-
-        write_arrays(path, result, mesh)
+            picture.write_picture(arguments.picture, result.vertices, result.quads, files)
+        if arguments.report:
+            with files.replacing(arguments.report) as file:
+                file.write(report.as_text(result.report).encode())
 
 
 def _write_failure(arguments: argparse.Namespace, options: RemeshOptions, error: BaseException) -> None:

@@ -9,7 +9,10 @@ import stat
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from types import TracebackType
 from typing import BinaryIO
+
+from .held_signals import signals_held
 
 
 class MeshFileError(Exception):
@@ -34,6 +37,8 @@ def check_place(path: str | os.PathLike[str]) -> None:
         raise UnwritableFileError(f"{path}: is a folder")
     if path.exists() and not path.is_file():  # a device, say: it must not be replaced by a file
         raise UnwritableFileError(f"{path}: is no regular file")
+    if path.exists() and not os.access(path, os.W_OK):  # a folder's owner could replace it all the same
+        raise UnwritableFileError(f"{path}: is write-protected")
     if not os.access(folder, os.W_OK):
         raise UnwritableFileError(f"{path}: the folder {folder} cannot be written to")
 
@@ -66,6 +71,73 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
         raise MeshFileError(f"{path}: {error}") from error
 
 
+class FilesTogether:
+    """Files that take their places at one go, once everything is in all of them; none does if anything goes wrong before.
+
+    For use as a context, at whose end that is done, in the order in which they were written; no signal comes between.
+
+    Attributes
+    ----------
+    are_in_place : bool
+        Whether it is done; what interrupts a run after that is too late.
+    """
+
+    def __init__(self) -> None:
+        self.are_in_place = False
+        self._ready: list[tuple[str | os.PathLike[str], str, Path]] = []
+
+    def __enter__(self) -> FilesTogether:
+        return self
+
+    @contextlib.contextmanager
+    def replacing(self, path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+        """As the function of that name, but that the file takes the place of `path` only at the end of all.
+
+        Raises
+        ------
+        UnwritableFileError
+        """
+        place = _place_of(path)
+        name = ""
+        try:
+            with signals_held():  # nobody would know of the file
+                # Not named after the file, whose name may be as long as names can be.
+                handle, name = tempfile.mkstemp(prefix=".hybrid-quad.", suffix=".part", dir=place.parent)
+                opened = os.fdopen(handle, "wb")
+            with opened as file:
+                yield file
+                put_on_disk(file)
+            os.chmod(name, _permissions(place))
+            self._ready.append((path, name, place))
+        except BaseException as error:
+            if name:
+                _remove(name)
+            if isinstance(error, OSError):
+                raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
+            raise
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with signals_held() as came:
+            try:
+                if kind is None and not came:
+                    self._put_in_place()
+            finally:
+                for _, name, _ in self._ready:
+                    _remove(name)
+
+    def _put_in_place(self) -> None:
+        while self._ready:
+            path, name, place = self._ready[0]
+            try:
+                os.replace(name, place)
+            except OSError as error:
+                raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
+            del self._ready[0]
+        self.are_in_place = True
+
+
 @contextlib.contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """A file that takes the place of `path` once everything is in it, and vanishes if anything goes wrong before.
@@ -76,24 +148,13 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     ------
     UnwritableFileError
     """
-    place = _place_of(path)
-    try:
-        # Not named after the file, whose name may be as long as names can be.
-        handle, name = tempfile.mkstemp(prefix=".hybrid-quad.", suffix=".part", dir=place.parent)
-    except OSError as error:
-        raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
-    try:
-        with os.fdopen(handle, "wb") as file:
-            yield file
-            put_on_disk(file)
-        os.chmod(name, _permissions(place))
-        os.replace(name, place)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        if isinstance(error, OSError):
-            raise UnwritableFileError(f"{path}: {error.strerror or error}") from error
-        raise
+    with FilesTogether() as files, files.replacing(path) as file:
+        yield file
+
+
+def _remove(name: str) -> None:
+    with signals_held(), contextlib.suppress(OSError):
+        os.unlink(name)
 
 
 def put_on_disk(file: BinaryIO) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import native, report
-from .file_places import reading, replacing
+from .file_places import FilesTogether, reading, replacing
 from .mesh_formats import check_writable
 from .obj_file import read_obj
 from .options import RemeshOptions
@@ -80,13 +80,18 @@ def remesh_held(
     return HeldQuads(found, report.finished(found.report, options, __version__))
 
 
-def write_held(path: str | os.PathLike[str], result: HeldQuads) -> None:
-    """:func:`hybrid_quad.core.mesh_io.write_mesh`."""
+def write_held(path: str | os.PathLike[str], result: HeldQuads, together: FilesTogether | None = None) -> None:
+    """:func:`hybrid_quad.core.mesh_io.write_mesh`.
+
+    Raises
+    ------
+    MeshFileError
+    """
     if Path(path).suffix.lower() != ".obj":
         from .mesh_io import write_mesh
 
-        write_mesh(path, result.vertices, result.quads)
+        write_mesh(path, result.vertices, result.quads, together)
         return
     check_writable(path)
-    with replacing(path) as file:
+    with together.replacing(path) if together else replacing(path) as file:
         file.write(result.mesh.obj_text())

@@ -15,13 +15,15 @@ from typing import BinaryIO
 import numpy as np
 
 from . import native
-from .file_places import read_text, reading, replacing
+from .file_places import FilesTogether, read_text, reading, replacing
 from .mesh_arrays import FloatArray, IntArray, Polygons, as_polygons, clipped_to_int32
 from .mesh_formats import check_readable, check_writable
 from .obj_file import read_obj
 from .off_file import read_off
 from .ply_file import read_ply
 from .stl_file import read_stl
+
+_ROWS_AT_ONCE = 50_000
 
 
 def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
@@ -49,7 +51,9 @@ def read_mesh(path: str | os.PathLike[str]) -> tuple[FloatArray, Polygons]:
         return reader(path)
 
 
-def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArray) -> None:
+def write_mesh(
+    path: str | os.PathLike[str], vertices: FloatArray, quads: IntArray, together: FilesTogether | None = None
+) -> None:
     """Writes a quad mesh so that the file is either whole or, on failure, as it was before.
 
     Parameters
@@ -59,6 +63,8 @@ def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArr
     vertices : (n, 3) float64
         Written so that reading gives the same bits.
     quads : (m, 4) int32
+    together : FilesTogether, optional
+        Files with which it takes its place.
 
     Raises
     ------
@@ -67,7 +73,7 @@ def write_mesh(path: str | os.PathLike[str], vertices: FloatArray, quads: IntArr
     path = Path(path)
     check_writable(path)
     writer = {".obj": _write_obj, ".ply": _write_ply, ".off": _write_off}[path.suffix.lower()]
-    with replacing(path) as file:
+    with together.replacing(path) if together else replacing(path) as file:
         writer(file, vertices, quads)
 
 
@@ -101,8 +107,10 @@ def _write_off(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:
 
 
 def _write_rows(file: BinaryIO, row: str, values: FloatArray | IntArray) -> None:
-    """One line a row, several times as fast as numpy writes text."""
-    file.write((row * len(values) % tuple(values.ravel().tolist())).encode())
+    """One line a row, several times as fast as numpy writes text; some at a time, between which a signal can act."""
+    for begin in range(0, len(values), _ROWS_AT_ONCE):
+        some = values[begin : begin + _ROWS_AT_ONCE]
+        file.write((row * len(some) % tuple(some.ravel().tolist())).encode())
 
 
 def _write_ply(file: BinaryIO, vertices: FloatArray, quads: IntArray) -> None:

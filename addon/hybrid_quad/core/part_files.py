@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .file_places import MeshFileError, read_text, replacing
+from .file_places import FilesTogether, MeshFileError, read_text, replacing
 from .mesh_arrays import FloatArray, Polygons
 from .mesh_formats import check_writable
 from .part_sheet import Indices
@@ -32,7 +32,9 @@ def read_part(path: str | os.PathLike[str]) -> Indices:
     return np.array([min(number, np.iinfo(np.int64).max) for number in numbers], np.int64)
 
 
-def write_polygons(path: str | os.PathLike[str], vertices: FloatArray, polygons: Polygons) -> None:
+def write_polygons(
+    path: str | os.PathLike[str], vertices: FloatArray, polygons: Polygons, together: FilesTogether | None = None
+) -> None:
     """Writes a mesh so that the file is either whole or, on failure, as it was before.
 
     Parameters
@@ -42,6 +44,8 @@ def write_polygons(path: str | os.PathLike[str], vertices: FloatArray, polygons:
     vertices : (n, 3) float64
         Written so that reading gives the same bits.
     polygons : Polygons
+    together : FilesTogether, optional
+        Files with which it takes its place.
 
     Raises
     ------
@@ -53,7 +57,7 @@ def write_polygons(path: str | os.PathLike[str], vertices: FloatArray, polygons:
     faces = [
         polygons.vertices[end - size : end].tolist() for size, end in zip(polygons.sizes.tolist(), ends, strict=True)
     ]
-    with replacing(path) as file:
+    with together.replacing(path) if together else replacing(path) as file:
         file.writelines(line.encode() for line in _LINES[path.suffix.lower()](vertices, faces))
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .file_places import replacing
+from .file_places import FilesTogether, replacing
 from .mesh_arrays import FloatArray, IntArray
 from .png_file import Pixels, png_of
 
@@ -30,7 +30,9 @@ _DOTS_AT_ONCE = 1_000_000
 _LEVELS = 1 << 28  # of nearness
 
 
-def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> None:
+def write_picture(
+    path: str | Path, vertices: FloatArray, quads: IntArray, together: FilesTogether | None = None
+) -> None:
     """Writes a PNG picture of a mesh as seen from its front, right and above (Blender's axes: z up).
 
     Parameters
@@ -38,6 +40,8 @@ def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> No
     path : path
     vertices : (n, 3) float64
     quads : (m, 4) int32
+    together : FilesTogether, optional
+        Files with which it takes its place.
 
     Raises
     ------
@@ -47,7 +51,7 @@ def write_picture(path: str | Path, vertices: FloatArray, quads: IntArray) -> No
     large = draw(vertices, quads).reshape(HEIGHT, _SCALE, WIDTH, _SCALE, 3)
     pixels = np.rint(large.mean(axis=(1, 3))).astype(np.uint8)
     # Few colours, so that a page of many pictures stays small.
-    with replacing(path) as file:
+    with together.replacing(path) if together else replacing(path) as file:
         file.write(png_of(pixels, _PALETTE, kept=(_BACKGROUND, _FEW, _MANY)))
 
 
