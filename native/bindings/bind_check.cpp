@@ -2,7 +2,10 @@
 
 #include <pybind11/numpy.h>
 
+#include <utility>
+
 #include "defect_list.h"
+#include "heed_signals.h"
 #include "hybrid_quad/mesh/indexed_surface.h"
 #include "polygon_arrays.h"
 
@@ -10,34 +13,20 @@ namespace py = pybind11;
 
 namespace hybrid_quad {
 
-namespace {
-
-BuiltMesh built_without_gil(const PolygonSoup& soup) {
-  const py::gil_scoped_release release;
-  return build_mesh(soup);
-}
-
-}  // namespace
-
 void bind_check(py::module_& module, const ErrorTypes& errors) {
   module.def(
       "check",
       [](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices) {
-        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
-        std::vector<Defect> defects;
-        {
-          const py::gil_scoped_release release;
-          defects = check_mesh(soup);
-        }
-        return list_of_defects(defects);
+        PolygonSoup given = soup_from_arrays(vertices, face_sizes, face_vertices);
+        return list_of_defects(heeding_signals([soup = std::move(given)] { return check_mesh(soup); }));
       },
       py::arg("vertices"), py::arg("face_sizes"), py::arg("face_vertices"), "Defects of a polygon mesh, as dicts.");
   module.def(
       "repair",
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices) {
-        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
+        PolygonSoup given = soup_from_arrays(vertices, face_sizes, face_vertices);
         try {
-          const BuiltMesh built = built_without_gil(soup);
+          const BuiltMesh built = heeding_signals([soup = std::move(given)] { return build_mesh(soup); });
           const IndexedSurface surface = indexed_surface(built);
           py::dict out;
           out["vertices"] = array_from_points(surface.positions);

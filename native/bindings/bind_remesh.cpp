@@ -128,6 +128,7 @@ void bind_remesh(py::module_& module, const ErrorTypes& errors) {
       .def(py::init<>())
       .def_property_readonly("recalled", &StageCache::recalled, "Names of the stages of the latest run that were known.");
   module.def("keep_freed_memory", &keep_freed_memory, "Has a process that ends with its run keep the memory that it frees on the way.");
+  module.def("resident_memory_mb", &resident_memory_mb, "Resident memory of the process now, in MB of 2^20 bytes.");
   module.def("default_options", &default_options, "Defaults of the core's options, as keyword arguments of remesh.");
   module.def(
       "remesh",

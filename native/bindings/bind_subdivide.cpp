@@ -2,6 +2,9 @@
 
 #include <pybind11/numpy.h>
 
+#include <utility>
+
+#include "heed_signals.h"
 #include "hybrid_quad/mesh/mesh_builder.h"
 #include "hybrid_quad/quality/quality.h"
 #include "hybrid_quad/subdivision/subdivision.h"
@@ -25,8 +28,7 @@ py::dict dict_of_mesh(const SubdividedMesh& mesh) {
   return out;
 }
 
-std::vector<double> distances_without_gil(const std::vector<Vector3>& points, const PolygonSoup& soup, int threads) {
-  const py::gil_scoped_release release;
+std::vector<double> distances_to_mesh(const std::vector<Vector3>& points, const PolygonSoup& soup, int threads) {
   RunContext context;
   context.threads = threads;
   const BuiltMesh built = build_mesh(soup, context);
@@ -41,7 +43,7 @@ void bind_subdivide(py::module_& module, const ErrorTypes& errors) {
       [errors](const DoubleArray& vertices, const IntArray& face_sizes, const IntArray& face_vertices, int levels, bool limit,
                bool keep_corners, const IntArray& crease_edges, const DoubleArray& crease_sharpness,
                const IntArray& sharp_vertices, const DoubleArray& vertex_sharpness) {
-        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
+        PolygonSoup given = soup_from_arrays(vertices, face_sizes, face_vertices);
         SubdivisionOptions options;
         options.levels = levels;
         options.limit = limit;
@@ -51,12 +53,8 @@ void bind_subdivide(py::module_& module, const ErrorTypes& errors) {
         options.sharp_vertices = integers_from_array(sharp_vertices);
         options.vertex_sharpness = values_from_array(vertex_sharpness);
         try {
-          SubdividedMesh mesh;
-          {
-            const py::gil_scoped_release release;
-            mesh = subdivide(soup, options, RunContext{});
-          }
-          return dict_of_mesh(mesh);
+          return dict_of_mesh(
+              heeding_signals([soup = std::move(given), options = std::move(options)] { return subdivide(soup, options, RunContext{}); }));
         } catch (const InputError& error) {
           raise_in_python(errors, error);
         } catch (const InternalError& error) {
@@ -70,9 +68,11 @@ void bind_subdivide(py::module_& module, const ErrorTypes& errors) {
       "distances",
       [errors](const DoubleArray& points, const DoubleArray& vertices, const IntArray& face_sizes,
                const IntArray& face_vertices, int threads) {
-        const PolygonSoup soup = soup_from_arrays(vertices, face_sizes, face_vertices);
+        std::vector<Vector3> places = vectors_from_array(points);
+        PolygonSoup given = soup_from_arrays(vertices, face_sizes, face_vertices);
         try {
-          return array_from_values(distances_without_gil(vectors_from_array(points), soup, threads));
+          return array_from_values(heeding_signals(
+              [own = std::move(places), soup = std::move(given), threads] { return distances_to_mesh(own, soup, threads); }));
         } catch (const InputError& error) {
           raise_in_python(errors, error);
         }

@@ -222,6 +222,39 @@ def test_an_interrupt_ends_the_run():
     assert time.monotonic() - begin < 1.5
 
 
+LARGER = surfaces.torus(700, 300)
+CALLS = {
+    "check": lambda: hybrid_quad.check(*LARGER),
+    "repair": lambda: hybrid_quad.repair(*LARGER),
+    "subdivide": lambda: hybrid_quad.subdivide(*BIG, levels=2),
+    "surface_distances": lambda: hybrid_quad.surface_distances(np.tile(BIG[0] * 1.1, (4, 1)), *BIG, threads=1),
+}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+def test_an_interruption_of_what_reports_no_progress_does_not_wait_for_its_end(call):
+    begin = time.process_time()
+    call()
+    whole = time.process_time() - begin
+    asked = []
+
+    def interrupt():
+        asked.append(time.process_time())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.15 * whole, interrupt)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            timer.start()
+            call()
+            timer.join()
+        assert time.process_time() - asked[0] < 0.15 + 0.4 * whole
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_snapshots_of_every_stage(tmp_path):
     seen = []
     vertices, faces = surfaces.box(8)
