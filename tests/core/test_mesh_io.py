@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fuzz.fuzz_readers import damaged, verdict_on
-from hybrid_quad.core import mesh_formats
+from hybrid_quad.core import mesh_formats, stl_file
 from hybrid_quad.core.file_places import MeshFileError, replacing
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
 from hybrid_quad.core.wish_files import read_edges, read_line_elements, read_polylines
@@ -284,6 +284,33 @@ def test_binary_stl_that_begins_as_a_text_does(tmp_path, filler):
     assert rows(polygons) == [[0, 1, 2]]
     with pytest.raises(MeshFileError, match="ends too early"):
         read_mesh(file_with(tmp_path, "a.stl", content[:-5]))
+
+
+@pytest.mark.parametrize("size", [1, 7, 40, 100])
+def test_stl_texts_are_the_same_whatever_part_of_them_is_read_at_once(tmp_path, monkeypatch, size):
+    two = ascii_stl("a vertex b").replace(
+        "endsolid", "facet normal 0 0 1\n vertex\n 1\n 0 0\nvertex -0 0 0 vertex 5 5\n5\nendsolid"
+    )
+    broken = two.replace("vertex 5 5", "vertex 5 x")
+    expected = read_mesh(file_with(tmp_path, "a.stl", two))
+    monkeypatch.setattr(stl_file, "_BLOCK", size)
+    vertices, polygons = read_mesh(file_with(tmp_path, "a.stl", two))
+    assert np.array_equal(vertices, expected[0])
+    assert rows(polygons) == rows(expected[1])
+    with pytest.raises(MeshFileError, match="vertex 5, counted from 0"):
+        read_mesh(file_with(tmp_path, "a.stl", broken))
+    with pytest.raises(MeshFileError, match="ends within a triangle"):
+        read_mesh(file_with(tmp_path, "a.stl", two[: two.rindex("5")]))
+
+
+def test_places_of_points_are_those_of_unique_rows():
+    random = np.random.default_rng(3)
+    for count in (0, 1, 30, 300):
+        points = random.choice([0.0, -0.0, 1.0, np.nan, np.inf], (count, 3), p=[0.3, 0.3, 0.3, 0.05, 0.05])
+        first, places = stl_file._merged(points)
+        _, own, group = np.unique(points, axis=0, return_index=True, return_inverse=True)
+        assert first.tolist() == sorted(own.tolist())
+        assert np.array_equal(first[places], own[group.reshape(-1)])
 
 
 @pytest.mark.filterwarnings("error")

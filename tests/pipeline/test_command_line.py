@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,11 @@ import pytest
 import hybrid_quad
 from hybrid_quad.cli import exit_codes, remesh_command
 from hybrid_quad.cli.main import main
+from hybrid_quad.core.file_places import MeshFileError
 from hybrid_quad.core.held_signals import signals_held
+from hybrid_quad.core.mesh_arrays import as_polygons
 from hybrid_quad.core.mesh_io import read_mesh
+from hybrid_quad.core.part_files import write_polygons
 from hybrid_quad.core.validation import violations
 from support import surfaces
 from support.children import from_a_shell, heed_interrupts
@@ -373,6 +377,61 @@ def test_a_memory_limit_that_is_reached_in_the_middle_of_a_run(tmp_path):
     assert json.loads(report.read_text())["status"] == "memory_limit"
     report.unlink()
     assert contents(tmp_path) == before
+
+
+@pytest.fixture
+def slow_file(tmp_path, monkeypatch):
+    """A mesh whose reading does what is put into `slow_file.act`, and then takes until the test ends."""
+    from hybrid_quad.core import mesh_io
+
+    ended = threading.Event()
+
+    class SlowFile:
+        path = str(tmp_path / "slow.off")
+        act = staticmethod(lambda: None)
+        words = ("remesh", path, str(tmp_path / "out.obj"), "--quads", "100")
+
+        @staticmethod
+        def read(_path):
+            SlowFile.act()
+            if ended.wait(60):
+                raise RuntimeError("nobody waits for this any more")
+            raise MeshFileError("read to its end")
+
+    monkeypatch.setattr(mesh_io, "read_mesh", SlowFile.read)
+    (tmp_path / "out.obj").write_text("old result")
+    (tmp_path / "slow.off").write_text("")
+    yield SlowFile
+    ended.set()
+
+
+def test_limits_end_a_run_while_its_mesh_is_read(tmp_path, slow_file, capfd):
+    unchanged(tmp_path, [*slow_file.words, "--time-limit", "0.1"], exit_codes.CANCELLED)
+    assert "cancelled during reading (the time limit passed); nothing was written" in capfd.readouterr().err
+    report = tmp_path / "report.json"
+    assert main([*slow_file.words, "--memory-limit", "1", "--report", str(report)]) == exit_codes.CANCELLED
+    assert "cancelled during reading (the memory limit is reached); nothing was written" in capfd.readouterr().err
+    assert json.loads(report.read_text())["status"] == "memory_limit"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("command", ["remesh", "check"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_a_command_while_its_mesh_is_read(tmp_path, slow_file, capfd, own_signals, command, number):
+    slow_file.act = lambda: os.kill(os.getpid(), number)
+    words = slow_file.words if command == "remesh" else ["check", slow_file.path]
+    unchanged(tmp_path, words, exit_codes.CANCELLED)
+    assert "nothing was written" in capfd.readouterr().err
+
+
+def test_a_process_ends_while_its_mesh_is_still_read(tmp_path):
+    mesh = tmp_path / "big.off"
+    vertices, faces = surfaces.torus(400, 160)
+    write_polygons(mesh, np.asarray(vertices), as_polygons(faces))
+    asked = on_one_thread("remesh", str(mesh), str(tmp_path / "out.obj"), "--memory-limit", "1")
+    child = subprocess.run(asked, capture_output=True, text=True, check=False)
+    assert child.returncode == exit_codes.CANCELLED, child.stderr
+    assert "during reading" in child.stderr
 
 
 def test_a_machine_without_memory(tmp_path, torus, capfd, monkeypatch):

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..core.file_places import check_apart, check_place, replacing
 from . import exit_codes
 from .messages import describe_defect, show, verdict_on
+
+if TYPE_CHECKING:
+    from ..core.check import Defect
+    from ..core.mesh_arrays import FloatArray, Polygons
 
 
 def add_to(commands: Any) -> None:
@@ -29,12 +33,17 @@ def run(arguments: argparse.Namespace) -> int:
     from ..core.check import check  # loads NumPy, which not all commands need
     from ..core.mesh_io import read_mesh
     from ..core.wish_files import read_line_elements
+    from .watched_work import watched
 
     if arguments.report:
         check_place(arguments.report)
         check_apart(arguments.report, [arguments.input])
-    vertices, polygons = read_mesh(arguments.input)
-    defects = check(vertices, polygons, edges=read_line_elements(arguments.input))
+
+    def find() -> tuple[FloatArray, Polygons, list[Defect]]:
+        vertices, polygons = read_mesh(arguments.input)
+        return vertices, polygons, check(vertices, polygons, edges=read_line_elements(arguments.input))
+
+    vertices, polygons, defects = watched(find, lambda: None)
     if arguments.report:
         text = json.dumps({"defects": [defect.as_json() for defect in defects]}, indent=2) + "\n"
         with replacing(arguments.report) as file:

@@ -26,8 +26,9 @@ def main() -> int:
         say("cancelled; nothing was written")
         status = exit_codes.CANCELLED
     _finish_streams()
-    if sys.argv[1:2] == ["remesh"]:
-        # At once: all files are closed, and to give the memory back piece by piece takes a thirtieth of a short run.
+    if sys.argv[1:2] in (["remesh"], ["check"]):
+        # At once: all files are closed, to give the memory back piece by piece takes a thirtieth of a short run, and a
+        # thread may be left that still reads what is no longer wanted.
         os._exit(status)
     return status
 

@@ -17,7 +17,7 @@ from ..core.parent_process import end_with_stdin
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say, what_became_of
 from .progress_bar import ProgressBar
-from .run_checks import check_time, check_valid
+from .run_checks import RunLimits, check_valid
 from .setting_arguments import add_settings, options_of
 
 if TYPE_CHECKING:
@@ -53,11 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.end_with_stdin:
         end_with_stdin()
     options = options_of(arguments)
+    limits = RunLimits(options, started)
     check_writable(arguments.output)
     _check_files(arguments)
     files = file_places.FilesTogether()
     try:
-        result, mesh = _remesh(arguments, options, started)
+        result, mesh = _remesh(arguments, options, limits)
         _write(arguments, result, mesh, files)
         _tell(arguments, result, started)
     except OSError as error:  # of a folder of stages: what else is read or written has errors of its own
@@ -102,16 +103,16 @@ def _check_files(arguments: argparse.Namespace) -> None:
 
 
 def _remesh(
-    arguments: argparse.Namespace, options: RemeshOptions, started: float
+    arguments: argparse.Namespace, options: RemeshOptions, limits: RunLimits
 ) -> tuple[HeldQuads | RemeshResult, PartRemesh | None]:
     reads_wishes = any(getattr(arguments, name) is not None for name in FILES_READ)
     if reads_wishes or arguments.dump_stages or not can_hold(arguments.input, options):
         from .array_run import remesh_arrays  # loads NumPy
 
-        return remesh_arrays(arguments, options, started)
+        return remesh_arrays(arguments, options, limits)
     native.load().keep_freed_memory()
     mesh = read_held(arguments.input)
-    check_time(options, started)
+    limits.check_time("reading")
     with ProgressBar(arguments.quiet) as bar:
         result = remesh_held(mesh, options, bar.update, measure_distances=arguments.report is not None)
     check_valid(result.mesh.violations())
@@ -124,7 +125,7 @@ def _write(
     mesh: PartRemesh | None,
     files: file_places.FilesTogether,
 ) -> None:
-    """All that the run gives, put in place together: no result without its report, and no report of success without one."""
+    """All that the run gives, put in place together: no result without its report, nor a report of success without it."""
     with files:
         if isinstance(result, HeldQuads):
             write_held(arguments.output, result, files)

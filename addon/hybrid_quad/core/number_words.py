@@ -13,8 +13,8 @@ _NAN = re.compile(r"[+-]?nan\(\w*\)", re.IGNORECASE | re.ASCII)  # as C librarie
 _SHOWN = 40
 
 
-def coordinates(words: Sequence[str | bytes], per_vertex: int = 1) -> FloatArray:
-    """(k,) the numbers that `words` are, of which each vertex has `per_vertex`.
+def coordinates(words: Sequence[str | bytes], per_vertex: int = 1, first: int = 0) -> FloatArray:
+    """(k,) the numbers that `words` are, of which each vertex has `per_vertex`, from the one of number `first` on.
 
     Raises
     ------
@@ -24,7 +24,7 @@ def coordinates(words: Sequence[str | bytes], per_vertex: int = 1) -> FloatArray
     try:
         return np.array(words, dtype=object).astype(np.float64)
     except ValueError:
-        return np.array([_coordinate(word, place // per_vertex) for place, word in enumerate(words)])
+        return np.array([_coordinate(word, first + place // per_vertex) for place, word in enumerate(words)])
 
 
 def whole_number(word: str | bytes, what: str, *names: object) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -11,13 +12,16 @@ import numpy.typing as npt
 from .mesh_arrays import FloatArray
 from .number_words import coordinates
 
+Indices = npt.NDArray[np.int64]
+
+_BLOCK = 1 << 20  # bytes
 _HEAD = 84  # bytes before the first triangle: any text, and how many there are
 _TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 # What the lines that begin and end a solid call it, which may be anything: "my vertex model".
 _NAME = re.compile(rb"^[ \t]*(?:end)?solid\b(?:(?!facet\s+normal)[^\n])*", re.MULTILINE)
 
 
-def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+def read_stl(data: bytes) -> tuple[FloatArray, Indices]:
     """Vertices (n, 3), those with the very same coordinates made one, and triangles (m, 3) of an STL file.
 
     Parameters
@@ -43,16 +47,48 @@ def read_stl(data: bytes) -> tuple[FloatArray, npt.NDArray[np.int64]]:
         raise ValueError("no STL file, or one that ends too early")
     if len(points) % 3:
         raise ValueError("the STL file ends within a triangle")
-    _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # as they come in the file
+    first, triangles = _merged(points)
+    return points[first], triangles.reshape(-1, 3)
+
+
+def _merged(points: FloatArray) -> tuple[Indices, Indices]:
+    """The first point in each place, as they come, and (n,) the number in these of each point's place.
+
+    By sorting columns, a tenth of the time that ``np.unique`` of rows takes. Zeros are equal whatever their signs; what is
+    no number equals nothing.
+    """
+    along = np.lexsort(points.T)  # keeps the order of equal ones
+    rows = points[along]
+    begins = np.append(True, (rows[1:] != rows[:-1]).any(axis=1))[: len(rows)]
+    first = along[begins]
+    place = np.empty(len(points), np.int64)
+    place[along] = np.cumsum(begins) - 1
+    order = np.argsort(first)
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
-    return points[first[order]], rank[place.reshape(-1)].reshape(-1, 3)
+    return first[order], rank[place]
 
 
 def _points_of_text(data: bytes) -> FloatArray:
-    words = _NAME.sub(b"", data.lower().replace(b"\r", b"\n")).split()
-    begins = [place for place, word in enumerate(words) if word == b"vertex"]
-    if begins and begins[-1] + 3 >= len(words):
+    parts: list[FloatArray] = []
+    count, left = 0, list[bytes]()
+    for block in _blocks(data.replace(b"\r", b"\n")):
+        words = left + _NAME.sub(b"", block.lower()).split()
+        begins = [place for place, word in enumerate(words) if word == b"vertex"]
+        whole = [at for at in begins if at + 3 < len(words)]
+        left = words[begins[len(whole)] :] if len(whole) < len(begins) else []
+        parts.append(coordinates([word for at in whole for word in words[at + 1 : at + 4]], 3, count).reshape(-1, 3))
+        count += len(whole)
+    if left:
         raise ValueError("the STL file ends within a triangle")
-    return coordinates([word for at in begins for word in words[at + 1 : at + 4]], 3).reshape(-1, 3)
+    return np.concatenate(parts)
+
+
+def _blocks(data: bytes) -> Iterator[bytes]:
+    """Parts of a text that end with lines: its words at once would take many times its memory, and keep others waiting."""
+    begin = 0
+    while begin < len(data):
+        end = data.find(b"\n", begin + _BLOCK)
+        end = len(data) if end < 0 else end + 1
+        yield data[begin:end]
+        begin = end

@@ -14,6 +14,8 @@ import numpy as np
 from .file_places import MeshFileError, read_text
 from .mesh_arrays import FloatArray, IntArray, clipped_to_int32
 
+_LINE_ELEMENT = re.compile(r"(?:\n|\A)\s*l[\s\\]")
+
 
 def read_edges(path: str | os.PathLike[str]) -> IntArray:
     """Vertex pairs from a text file: two 0-based vertex indices a line; ``#`` starts a comment.
@@ -71,7 +73,9 @@ def read_line_elements(path: str | os.PathLike[str]) -> IntArray:
     path = Path(path)
     pairs: list[tuple[int, int]] = []
     latest = 0
-    for _, tokens in _rows_of_obj(read_text(path)) if path.suffix.lower() == ".obj" else ():
+    text = read_text(path) if path.suffix.lower() == ".obj" else ""
+    # Most files have none, and their words need not be looked at one by one.
+    for _, tokens in _rows_of_obj(text) if _LINE_ELEMENT.search(text) else ():
         if tokens[:1] == ["v"]:
             latest += 1
         elif tokens[:1] == ["l"]:
