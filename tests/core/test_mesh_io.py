@@ -6,6 +6,7 @@ import pytest
 
 from fuzz.fuzz_readers import damaged, verdict_on
 from hybrid_quad.core import mesh_formats, stl_file
+from hybrid_quad.core.equal_points import merged_points
 from hybrid_quad.core.file_places import MeshFileError, replacing
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
 from hybrid_quad.core.wish_files import read_edges, read_line_elements, read_polylines
@@ -307,7 +308,7 @@ def test_places_of_points_are_those_of_unique_rows():
     random = np.random.default_rng(3)
     for count in (0, 1, 30, 300):
         points = random.choice([0.0, -0.0, 1.0, np.nan, np.inf], (count, 3), p=[0.3, 0.3, 0.3, 0.05, 0.05])
-        first, places = stl_file._merged(points)
+        first, places = merged_points(points)
         _, own, group = np.unique(points, axis=0, return_index=True, return_inverse=True)
         assert first.tolist() == sorted(own.tolist())
         assert np.array_equal(first[places], own[group.reshape(-1)])

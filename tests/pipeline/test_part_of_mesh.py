@@ -7,6 +7,7 @@ import pytest
 
 import hybrid_quad
 from hybrid_quad import remesh_part
+from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
 from hybrid_quad.core.edge_borders import edge_keys
 from hybrid_quad.core.mesh_arrays import as_polygons
@@ -185,3 +186,15 @@ def test_command_line(tmp_path, suffix):
     assert json.loads(paths[3].read_text())["part"]["chosen_faces"] == len(part)
     paths[2].write_text("1 x\n")
     assert main(arguments) == 2
+
+
+def test_a_part_of_a_file_whose_faces_use_vertices_that_are_not_there_is_refused(tmp_path, capfd):
+    """Also where only the rest does."""
+    vertices, faces = surfaces.grid(6, 6, 1.0, 1.0)
+    path, part = tmp_path / "in.off", tmp_path / "part.txt"
+    wrong = np.concatenate([np.asarray(faces), [[0, 1, 999]]])
+    write_polygons(path, np.asarray(vertices), as_polygons(wrong))
+    part.write_text("0 1 2 3")
+    arguments = ["remesh", str(path), str(tmp_path / "out.obj"), "--part", str(part), "--odd-border", "grow"]
+    assert main(arguments) == exit_codes.CANNOT_REMESH
+    assert "[index_out_of_range]" in capfd.readouterr().err

@@ -222,6 +222,24 @@ def test_an_interrupt_ends_the_run():
     assert time.monotonic() - begin < 1.5
 
 
+@pytest.mark.parametrize("number", [1, 4, 8])
+def test_a_part_is_given_up_before_the_stages_begin(number):
+    """At the first, fourth, eighth question: what is done with its border asks too."""
+    vertices, faces = surfaces.torus(60, 24)
+    asked = []
+
+    def cancel():
+        asked.append(True)
+        return len(asked) == number
+
+    with pytest.raises(hybrid_quad.Cancelled, match="cancelled during part") as caught:
+        hybrid_quad.remesh_part(vertices, faces, part=np.arange(200), odd_border="grow", cancel=cancel)
+    assert caught.value.code == "cancelled"
+    with pytest.raises(hybrid_quad.Cancelled, match=r"part \(the time limit passed\)") as caught:
+        hybrid_quad.remesh_part(vertices, faces, part=np.arange(200), odd_border="grow", time_limit=1e-9)
+    assert caught.value.code == "time_limit"
+
+
 LARGER = surfaces.torus(700, 300)
 CALLS = {
     "check": lambda: hybrid_quad.check(*LARGER),

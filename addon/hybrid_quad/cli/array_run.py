@@ -15,11 +15,12 @@ from ..core.part_files import read_part, write_polygons
 from ..core.part_sheet import Indices
 from ..core.part_weld import PartResult
 from ..core.remesh import RemeshResult, remesh_with_options
-from ..core.remesh_part import PartChoice, PartRemesh, as_part, joined, remesh_part_with_options
+from ..core.remesh_part import STAGE, PartChoice, PartRemesh, as_part, joined, remesh_part_with_options
+from ..core.run_limits import RunLimits
 from ..core.strokes import Stroke, joined_lines, kind_of_name
 from ..core.validation import violations
 from .progress_bar import ProgressBar
-from .run_checks import RunLimits, check_valid
+from .run_checks import check_valid
 from .watched_work import watched
 
 
@@ -38,7 +39,7 @@ def remesh_arrays(
     """The quads, checked, and, where they are those of a part, the whole mesh with them in it."""
     vertices, polygons, wishes, part = watched(lambda: _read(arguments), lambda: limits.check("reading"))
     limits.check("reading")
-    solve, asked = _part_solver(arguments, vertices, polygons, part, options) or (remesh_with_options, options)
+    solve, asked = _part_solver(arguments, vertices, polygons, part, options, limits) or (remesh_with_options, options)
     with ProgressBar(arguments.quiet) as bar:
         result = solve(vertices, polygons, asked, **wishes, progress=bar.update, dump_stages=arguments.dump_stages)
     check_valid(violations(result.vertices, result.quads))
@@ -82,6 +83,7 @@ def _part_solver(
     polygons: Polygons,
     part: Indices | None,
     options: RemeshOptions,
+    limits: RunLimits,
 ) -> tuple[Callable[..., RemeshResult], RemeshOptions] | None:
     """What remeshes the part, and the options for it; None where the whole mesh is remeshed.
 
@@ -96,7 +98,7 @@ def _part_solver(
     is_free = arguments.quads is None and arguments.edge_length is None and arguments.chord_error is None
     choice = PartChoice(faces, arguments.odd_border, is_free)
     solve = functools.partial(remesh_part_with_options, part=faces, odd_border=choice.odd_border)
-    return solve, choice.options_for(vertices, polygons, options)
+    return solve, choice.options_for(vertices, polygons, options, lambda: limits.check(STAGE))
 
 
 def _joined_mesh(vertices: FloatArray, polygons: Polygons, result: RemeshResult) -> PartRemesh | None:

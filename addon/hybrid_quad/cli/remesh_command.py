@@ -14,10 +14,11 @@ from ..core.held_mesh import HeldQuads, can_hold, read_held, remesh_held, write_
 from ..core.mesh_formats import check_writable
 from ..core.options import RemeshOptions
 from ..core.parent_process import end_with_stdin
+from ..core.run_limits import RunLimits
 from . import exit_codes
 from .messages import describe_defect, describe_symmetry, say, what_became_of
 from .progress_bar import ProgressBar
-from .run_checks import RunLimits, check_valid
+from .run_checks import check_valid
 from .setting_arguments import add_settings, options_of
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.end_with_stdin:
         end_with_stdin()
     options = options_of(arguments)
-    limits = RunLimits(options, started)
+    limits = RunLimits(options)
     check_writable(arguments.output)
     _check_files(arguments)
     files = file_places.FilesTogether()
@@ -112,7 +113,7 @@ def _remesh(
         return remesh_arrays(arguments, options, limits)
     native.load().keep_freed_memory()
     mesh = read_held(arguments.input)
-    limits.check_time("reading")
+    limits.check("reading")
     with ProgressBar(arguments.quiet) as bar:
         result = remesh_held(mesh, options, bar.update, measure_distances=arguments.report is not None)
     check_valid(result.mesh.violations())

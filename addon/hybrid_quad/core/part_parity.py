@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from .edge_borders import BoolArray, edge_keys
 from .errors import InputError
 from .mesh_arrays import FloatArray, Polygons
-from .part_sheet import CUT, FREE, INNER, SHARED, Indices, PartSheet, sheet_of, sides_of
+from .part_sheet import CUT, FREE, INNER, SHARED, Indices, PartSheet, sheet_of, sides_among
 
 
 class Cut(NamedTuple):
@@ -47,7 +48,13 @@ class EvenPart(NamedTuple):
     cuts: tuple[Cut, ...]
 
 
-def even_part(points: FloatArray, polygons: Polygons, part: BoolArray, odd_border: str = "refuse") -> EvenPart:
+def even_part(
+    points: FloatArray,
+    polygons: Polygons,
+    part: BoolArray,
+    odd_border: str = "refuse",
+    ask: Callable[[], object] = lambda: None,
+) -> EvenPart:
     """A part all of whose borders are even, or partly the mesh's own and so free to be.
 
     Parameters
@@ -58,6 +65,8 @@ def even_part(points: FloatArray, polygons: Polygons, part: BoolArray, odd_borde
     odd_border : {"refuse", "grow", "shrink"}
         What to do about a piece whose borders have an odd number of edges in all: refuse, or take in or leave out a face
         with an odd number of sides at its border.
+    ask : callable()
+        Called between steps; what it raises ends this.
 
     Raises
     ------
@@ -66,10 +75,12 @@ def even_part(points: FloatArray, polygons: Polygons, part: BoolArray, odd_borde
     """
     part = part.copy()
     for _ in range(int(part.sum()) + 1):
-        sheet = sheet_of(polygons, len(points), part)
+        ask()
+        sheet = sheet_of(polygons, len(points), part, ask=ask)
+        ask()
         odd = _odd_pieces(sheet)
         if not len(odd):
-            return EvenPart(part, *_cut(points, polygons, part, sheet))
+            return EvenPart(part, *_cut(points, polygons, part, sheet, ask))
         if odd_border == "refuse":
             raise _odd_error(sheet, odd[0], odd_border)
         candidates = _odd_faces(polygons, len(points), part, sheet, odd_border)
@@ -114,8 +125,11 @@ def _odd_faces(
     piece = np.repeat(sheet.components, sheet.polygons.sizes)[shared]
     border = edge_keys(sheet.origin[sheet.shared], vertex_count)  # type: ignore[arg-type]
     order = np.argsort(border)
-    sides = edge_keys(sides_of(polygons), vertex_count)  # type: ignore[arg-type]
-    face = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)
+    is_at_border = np.zeros(vertex_count, np.bool_)
+    is_at_border[sheet.origin[sheet.shared]] = True
+    corners, ends = sides_among(polygons, is_at_border)
+    sides = edge_keys(ends, vertex_count)  # type: ignore[arg-type]
+    face = np.searchsorted(np.cumsum(polygons.sizes), corners, "right")
     fits = np.isin(sides, border) & ((part if odd_border == "shrink" else ~part) & (polygons.sizes % 2 == 1))[face]
     own = piece[order][np.searchsorted(border[order], sides[fits])]
     pairs, common = np.unique(np.stack([own, face[fits]], axis=1), axis=0, return_counts=True)
@@ -127,11 +141,12 @@ def _odd_faces(
 
 
 def _cut(
-    points: FloatArray, polygons: Polygons, part: BoolArray, sheet: PartSheet
+    points: FloatArray, polygons: Polygons, part: BoolArray, sheet: PartSheet, ask: Callable[[], object]
 ) -> tuple[PartSheet, tuple[Cut, ...]]:
     """The sheet, cut from each odd border to another odd one of its piece, or to one that is partly free."""
     paths: list[tuple[Indices, Indices]] = []  # sides along both banks
     while True:
+        ask()
         loops = sheet.loops()
         odd = [_is_odd(sheet, loop) for loop in loops]
         if not any(odd):
@@ -156,7 +171,7 @@ def _cut(
             )
         paths.append(path)
         sheet = sheet_of(
-            polygons, len(points), part, np.concatenate([bank for both in paths for bank in both]).tolist()
+            polygons, len(points), part, np.concatenate([bank for both in paths for bank in both]).tolist(), ask
         )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -81,7 +82,13 @@ class PartSheet:
         return int(self.components[np.searchsorted(np.cumsum(self.polygons.sizes), corner, "right")])
 
 
-def sheet_of(polygons: Polygons, vertex_count: int, part: BoolArray, cuts: Iterable[int] = ()) -> PartSheet:
+def sheet_of(
+    polygons: Polygons,
+    vertex_count: int,
+    part: BoolArray,
+    cuts: Iterable[int] = (),
+    ask: Callable[[], object] = lambda: None,
+) -> PartSheet:
     """The sheet of a part.
 
     Parameters
@@ -91,6 +98,8 @@ def sheet_of(polygons: Polygons, vertex_count: int, part: BoolArray, cuts: Itera
     part : (#F,) bool
     cuts : iterable of int
         Inner sides (corners of the part's faces, counted among these) that are cut; both sides of an edge.
+    ask : callable()
+        Called between steps; what it raises ends this.
 
     Raises
     ------
@@ -99,12 +108,17 @@ def sheet_of(polygons: Polygons, vertex_count: int, part: BoolArray, cuts: Itera
     """
     if not part.any():
         raise InputError("no_part", "No face is chosen: there is nothing to remesh.")
-    _require_manifold(polygons, vertex_count, part)
+    sides = _Sides.of(polygons, vertex_count, part)
+    ask()
+    _require_manifold(sides, vertex_count)
+    ask()
     inside = np.repeat(part, polygons.sizes)
     own = Polygons(polygons.sizes[part], polygons.vertices[inside])
-    kinds = _kinds_of_sides(polygons, vertex_count, inside)
+    kinds = _kinds_of_sides(sides)
     kinds[list(cuts)] = CUT
+    ask()
     fans = fans_of_corners(own, kinds != INNER)
+    ask()
     origin = np.zeros(int(fans.max()) + 1, np.int64)
     origin[fans] = own.vertices
     sheet = Polygons(own.sizes, fans.astype(np.int32))
@@ -117,10 +131,34 @@ def sides_of(polygons: Polygons) -> Indices:
     return sides.astype(np.int64)
 
 
-def _kinds_of_sides(polygons: Polygons, vertex_count: int, inside: BoolArray) -> Indices:
-    """(C,) kinds of the sides at the corners inside."""
-    keys = edge_keys(sides_of(polygons), vertex_count)  # type: ignore[arg-type]
-    own, others = keys[inside], np.sort(keys[~inside])
+def sides_among(polygons: Polygons, is_among: BoolArray) -> tuple[Indices, Indices]:
+    """Corners at which sides begin both of whose ends are among some vertices, in their order, and (k, 2) these sides."""
+    near = is_among[polygons.vertices]
+    following = following_corners(polygons)
+    corners = np.flatnonzero(near & near[following])
+    sides = np.stack([polygons.vertices[corners], polygons.vertices[following[corners]]], axis=1)
+    return corners, sides.astype(np.int64)
+
+
+class _Sides(NamedTuple):
+    """Sides of the part's faces, and those of the rest that may be on them: of two vertices of the part."""
+
+    ends: Indices  # (k, 2)
+    keys: Indices
+    inside: BoolArray  # of the part's faces; these are all there, in their order
+
+    @classmethod
+    def of(cls, polygons: Polygons, vertex_count: int, part: BoolArray) -> _Sides:
+        of_part = np.repeat(part, polygons.sizes)
+        is_vertex = np.zeros(vertex_count, np.bool_)
+        is_vertex[polygons.vertices[of_part]] = True
+        corners, ends = sides_among(polygons, is_vertex)
+        return cls(ends, edge_keys(ends, vertex_count), of_part[corners])  # type: ignore[arg-type]
+
+
+def _kinds_of_sides(sides: _Sides) -> Indices:
+    """(C,) kinds of the sides at the part's corners."""
+    own, others = sides.keys[sides.inside], np.sort(sides.keys[~sides.inside])
     _, edge, uses = np.unique(own, return_inverse=True, return_counts=True)
     is_single = uses[edge.reshape(-1)] == 1
     place = np.minimum(np.searchsorted(others, own), max(len(others) - 1, 0))
@@ -129,10 +167,8 @@ def _kinds_of_sides(polygons: Polygons, vertex_count: int, inside: BoolArray) ->
     return kinds
 
 
-def _require_manifold(polygons: Polygons, vertex_count: int, part: BoolArray) -> None:
-    sides = sides_of(polygons)
-    keys = edge_keys(sides, vertex_count)  # type: ignore[arg-type]
-    inside = np.repeat(part, polygons.sizes)
+def _require_manifold(sides: _Sides, vertex_count: int) -> None:
+    ends, keys, inside = sides
     edges, edge = np.unique(keys, return_inverse=True)
     edge = edge.reshape(-1)
     uses = np.bincount(edge, minlength=len(edges))
@@ -147,7 +183,7 @@ def _require_manifold(polygons: Polygons, vertex_count: int, part: BoolArray) ->
             "edge",
             _vertex_pairs(edges[bad], vertex_count),
         )
-    forward = np.bincount(edge[inside & (sides[:, 0] < sides[:, 1])], minlength=len(edges))
+    forward = np.bincount(edge[inside & (ends[:, 0] < ends[:, 1])], minlength=len(edges))
     against = (own == 2) & (forward != 1)
     if against.any():
         raise InputError(

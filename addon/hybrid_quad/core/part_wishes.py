@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .edge_borders import edge_keys
+from .edge_borders import BoolArray, edge_keys
 from .errors import InputError
 from .guide_values import guides_of_vertices
 from .mesh_arrays import FloatArray, IntArray, Polygons, as_edges
 from .options import RemeshOptions
 from .part_parity import EvenPart
-from .part_sheet import INNER
+from .part_sheet import INNER, Indices
 from .remesh import usual_length
 from .strokes import Stroke
 from .surface_points import fan_triangles, nearest_on_surface
@@ -28,24 +28,24 @@ class PartWishes:
         self._points, self._polygons, self._part = points, polygons, even.part
         sides = even.sheet.sides
         keys = edge_keys(even.sheet.origin[sides], len(points))  # type: ignore[arg-type]
-        self._is_inner = even.sheet.kinds == INNER
-        self._edge_of = {int(key): (int(a), int(b)) for key, (a, b) in zip(keys, sides, strict=True)}
-        self._inner = set(keys[self._is_inner].tolist())
+        order = np.argsort(keys, kind="stable")
+        self._keys, self._sides = keys[order], sides[order]
+        self._inner = np.sort(keys[even.sheet.kinds == INNER])
 
     def edges(self, edges: IntArray) -> IntArray:
         """Those of some edges that are inside the part."""
-        keys = edge_keys(edges, len(self._points)).tolist() if len(edges) else []
-        return as_edges([self._edge_of[key] for key in keys if key in self._inner])
+        keys = edge_keys(edges, len(self._points))
+        return as_edges(self._sides_of(keys[self._are_inner(keys)]))
 
     def curve_counts(self, counts: list[tuple[list[int], int]]) -> list[tuple[list[int], int]]:
         """Those of some paths all of whose edges are inside the part."""
         found = []
         for path, count in counts:
             pairs = np.stack([path[:-1], path[1:]], axis=1).astype(np.int64)
-            keys = edge_keys(pairs, len(self._points)).tolist()  # type: ignore[arg-type]
-            if not keys or any(key not in self._inner for key in keys):
+            keys = edge_keys(pairs, len(self._points))  # type: ignore[arg-type]
+            if not len(keys) or not self._are_inner(keys).all():
                 continue
-            edges = [self._edge_of[key] for key in keys]
+            edges = self._sides_of(keys).tolist()
             own = [
                 edge[0] if self._sheet.origin[edge[0]] == v else edge[1]
                 for edge, v in zip(edges, path[:-1], strict=True)
@@ -53,6 +53,19 @@ class PartWishes:
             own.append(edges[-1][0] if self._sheet.origin[edges[-1][0]] == path[-1] else edges[-1][1])
             found.append((own, count))
         return found
+
+    def _are_inner(self, keys: Indices) -> BoolArray:
+        """Whether edges are inside the part."""
+        if not len(self._inner):
+            return np.zeros(len(keys), np.bool_)
+        place = np.minimum(np.searchsorted(self._inner, keys), len(self._inner) - 1)
+        are: BoolArray = self._inner[place] == keys
+        return are
+
+    def _sides_of(self, keys: Indices) -> Indices:
+        """(k, 2) sheet vertices of edges of the part; of several sides of an edge, the last."""
+        sides: Indices = self._sides[np.searchsorted(self._keys, keys, "right") - 1]
+        return sides
 
     def cut_counts(self, sheet_points: FloatArray, options: RemeshOptions) -> list[tuple[list[int], int]]:
         """Both banks of every cut, with one number of quads."""
@@ -79,9 +92,11 @@ class PartWishes:
     def strokes(self, strokes: Iterable[Stroke]) -> tuple[list[Stroke], int]:
         """Directions, and the loops and rings that lie in the part; how many are partly in it, and left out."""
         inside, crossing = [], 0
-        triangles = fan_triangles(self._polygons)
-        owner = np.repeat(np.arange(len(self._polygons.sizes)), np.maximum(self._polygons.sizes - 2, 0))
-        for stroke in strokes:
+        given = list(strokes)
+        if any(stroke.kind != "direction" for stroke in given):
+            triangles = fan_triangles(self._polygons)
+            owner = np.repeat(np.arange(len(self._polygons.sizes)), np.maximum(self._polygons.sizes - 2, 0))
+        for stroke in given:
             if stroke.kind == "direction":
                 inside.append(stroke)
                 continue

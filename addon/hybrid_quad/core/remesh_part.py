@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +30,10 @@ from .part_sheet import Indices, border_length, sheet_of
 from .part_weld import PartResult, welded
 from .part_wishes import PartWishes
 from .remesh import CancelCallback, PathLike, ProgressCallback, remesh_with_options
+from .run_limits import RunLimits
 from .strokes import Stroke, checked_strokes
+
+STAGE = "part"  # as errors call what is done here
 
 _NUDGE = 1e-9  # of the diagonal: how far the banks of a cut are apart, so that nobody takes them for a crack to close
 
@@ -79,11 +82,20 @@ class PartChoice(NamedTuple):
     odd_border: str = "refuse"
     uses_border_length: bool = False
 
-    def options_for(self, points: FloatArray, polygons: Polygons, options: RemeshOptions) -> RemeshOptions:
-        """`options` with the size of this part's quads."""
+    def options_for(
+        self, points: FloatArray, polygons: Polygons, options: RemeshOptions, ask: Callable[[], object] = lambda: None
+    ) -> RemeshOptions:
+        """`options` with the size of this part's quads; `ask` is called between steps, and what it raises ends them.
+
+        Raises
+        ------
+        InputError
+            As :func:`remesh_part`.
+        """
+        require_indices(polygons, len(points))
         if not self.uses_border_length:
             return options
-        length = border_length(points, sheet_of(polygons, len(points), self.faces))
+        length = border_length(points, sheet_of(polygons, len(points), self.faces, ask=ask))
         return dataclasses.replace(options, edge_length=length, chord_error=None)
 
 
@@ -148,11 +160,11 @@ def remesh_part(
     asked = RemeshOptions(**options, edge_length=edge_length)
     is_free = quads is None and edge_length is None and asked.chord_error is None
     choice = PartChoice(as_part(part, len(polygons.sizes)), odd_border, is_free)
-    require_indices(polygons, len(points))
+    limits = RunLimits(asked, cancel)
     result = remesh_part_with_options(
         points,
         polygons,
-        choice.options_for(points, polygons, asked),
+        choice.options_for(points, polygons, asked, lambda: limits.check(STAGE)),
         part=choice.faces,
         odd_border=odd_border,
         sharp_edges=sharp_edges,
@@ -193,16 +205,26 @@ def remesh_part_with_options(
         )
     if odd_border not in ODD_BORDERS:
         raise ValueError(f"odd_border must be one of {', '.join(ODD_BORDERS)}, not {odd_border!r}")
+    limits = RunLimits(options, cancel)
+
+    def ask() -> None:
+        limits.check(STAGE)
+
+    ask()
     chosen = as_part(part, len(polygons.sizes))
     require_indices(polygons, len(points))
-    even = even_part(points, polygons, chosen, odd_border)
+    even = even_part(points, polygons, chosen, odd_border, ask)
+    ask()
     require_welded(points, polygons, even)
+    ask()
     sheet_points = _nudged(points, even)
     marked = as_edges(sharp_edges)
     require_edges(marked, polygons, len(points))
     own = PartWishes(even, points, polygons)
+    ask()
     own_counts = own.curve_counts(as_curve_counts(curve_counts))
     own_strokes, crossing = own.strokes(checked_strokes(strokes))
+    ask()
     borders = [([int(a), int(b)], 1) for a, b in even.sheet.shared]
     try:
         result = remesh_with_options(
@@ -222,8 +244,10 @@ def remesh_part_with_options(
         )
     except InputError as error:
         raise own.error_of_whole(error) from error
+    ask()
     own.complete_report(result.report, len(own_counts), crossing, int(chosen.sum()))
     found = welded(result, points, even, sheet_points)
+    ask()
     require_sound(found, points, polygons)
     return found
 

@@ -26,6 +26,7 @@ WORDS = {
     "done": "handing the result over",
     "validation": "checking the result",
     "data_transfer": "transferring data",
+    "part": "fitting the part in",
     # Where something is noticed that must not happen.
     "remesh": "making the quads",
     "repair": "checking the mesh",
