@@ -1,6 +1,7 @@
 """Remeshing some faces: the rest keeps its bits, the quads join it edge to edge."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import hybrid_quad
 from hybrid_quad import remesh_part
 from hybrid_quad.cli import exit_codes
 from hybrid_quad.cli.main import main
+from hybrid_quad.core import part_files
 from hybrid_quad.core.edge_borders import edge_keys
 from hybrid_quad.core.mesh_arrays import as_polygons
 from hybrid_quad.core.mesh_io import read_mesh
@@ -198,3 +200,35 @@ def test_a_part_of_a_file_whose_faces_use_vertices_that_are_not_there_is_refused
     arguments = ["remesh", str(path), str(tmp_path / "out.obj"), "--part", str(part), "--odd-border", "grow"]
     assert main(arguments) == exit_codes.CANNOT_REMESH
     assert "[index_out_of_range]" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".off", ".ply"])
+def test_polygons_are_written_the_same_however_many_at_a_time(tmp_path, monkeypatch, suffix):
+    vertices = np.arange(21.0).reshape(7, 3) / 3
+    polygons = as_polygons([[0, 1, 2], [1, 2, 3, 4, 5], [], [2, 3, 6, 5], [6, 5, 4]])
+    whole, some = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+    write_polygons(whole, vertices, polygons)
+    monkeypatch.setattr(part_files, "_AT_ONCE", 2)
+    write_polygons(some, vertices, polygons)
+    assert some.read_bytes() == whole.read_bytes()
+    if suffix == ".off":
+        assert some.read_text().splitlines()[9:] == ["3 0 1 2", "5 1 2 3 4 5", "0 ", "4 2 3 6 5", "3 6 5 4"]
+
+
+def test_the_time_limit_of_a_part_counts_from_the_start_of_the_run(tmp_path, monkeypatch, capfd):
+    vertices, faces = surfaces.grid(12, 12, 1.0, 1.0)
+    path, part, out = tmp_path / "in.off", tmp_path / "part.txt", tmp_path / "out.obj"
+    write_polygons(path, np.asarray(vertices), as_polygons(faces))
+    part.write_text(" ".join(map(str, range(60))))
+    options_for = PartChoice.options_for
+
+    def slow(*given):
+        time.sleep(0.4)
+        return options_for(*given)
+
+    monkeypatch.setattr(PartChoice, "options_for", slow)
+    arguments = ["remesh", str(path), str(out), "--part", str(part), "--odd-border", "grow", "--time-limit"]
+    assert main([*arguments, "0.3"]) == exit_codes.CANCELLED
+    assert "(the time limit passed)" in capfd.readouterr().err
+    assert not out.exists()
+    assert main([*arguments, "600"]) == exit_codes.OK

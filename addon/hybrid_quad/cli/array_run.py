@@ -97,8 +97,13 @@ def _part_solver(
     faces = as_part(part, len(polygons.sizes))
     is_free = arguments.quads is None and arguments.edge_length is None and arguments.chord_error is None
     choice = PartChoice(faces, arguments.odd_border, is_free)
-    solve = functools.partial(remesh_part_with_options, part=faces, odd_border=choice.odd_border)
-    return solve, choice.options_for(vertices, polygons, options, lambda: limits.check(STAGE))
+
+    def ask() -> bool:  # here too the time counts from the start of the run
+        limits.check(STAGE)
+        return False
+
+    solve = functools.partial(remesh_part_with_options, part=faces, odd_border=choice.odd_border, cancel=ask)
+    return solve, choice.options_for(vertices, polygons, options, ask)
 
 
 def _joined_mesh(vertices: FloatArray, polygons: Polygons, result: RemeshResult) -> PartRemesh | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,8 @@ from .file_places import FilesTogether, MeshFileError, read_text, replacing
 from .mesh_arrays import FloatArray, Polygons
 from .mesh_formats import check_writable
 from .part_sheet import Indices
+
+_AT_ONCE = 20_000  # rows
 
 
 def read_part(path: str | os.PathLike[str]) -> Indices:
@@ -53,35 +55,50 @@ def write_polygons(
     """
     path = Path(path)
     check_writable(path)
-    ends = np.cumsum(polygons.sizes)
-    faces = [
-        polygons.vertices[end - size : end].tolist() for size, end in zip(polygons.sizes.tolist(), ends, strict=True)
-    ]
     with together.replacing(path) if together else replacing(path) as file:
-        file.writelines(line.encode() for line in _LINES[path.suffix.lower()](vertices, faces))
+        file.writelines(line.encode() for line in _LINES[path.suffix.lower()](vertices, polygons))
 
 
-def _lines_of_obj(vertices: FloatArray, faces: list[list[int]]) -> Iterable[str]:
-    yield from (f"v {x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in vertices.tolist())
-    yield from (f"f {' '.join(str(vertex + 1) for vertex in face)}\n" for face in faces)
+def _lines_of_obj(vertices: FloatArray, polygons: Polygons) -> Iterable[str]:
+    yield from (f"v {x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in _points(vertices))
+    yield from (f"f {' '.join(str(vertex + 1) for vertex in face)}\n" for face in _faces(polygons))
 
 
-def _lines_of_off(vertices: FloatArray, faces: list[list[int]]) -> Iterable[str]:
-    yield f"OFF\n{len(vertices)} {len(faces)} 0\n"
-    yield from _rows(vertices, faces)
+def _lines_of_off(vertices: FloatArray, polygons: Polygons) -> Iterable[str]:
+    yield f"OFF\n{len(vertices)} {len(polygons.sizes)} 0\n"
+    yield from _rows(vertices, polygons)
 
 
-def _lines_of_ply(vertices: FloatArray, faces: list[list[int]]) -> Iterable[str]:
+def _lines_of_ply(vertices: FloatArray, polygons: Polygons) -> Iterable[str]:
     yield (
         f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
-        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+        f"element face {len(polygons.sizes)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
-    yield from _rows(vertices, faces)
+    yield from _rows(vertices, polygons)
 
 
-def _rows(vertices: FloatArray, faces: list[list[int]]) -> Iterable[str]:
-    yield from (f"{x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in vertices.tolist())
-    yield from (f"{len(face)} {' '.join(map(str, face))}\n" for face in faces)
+def _rows(vertices: FloatArray, polygons: Polygons) -> Iterable[str]:
+    yield from (f"{x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in _points(vertices))
+    yield from (f"{len(face)} {' '.join(map(str, face))}\n" for face in _faces(polygons))
+
+
+def _points(vertices: FloatArray) -> Iterator[list[float]]:
+    """As lists, some at a time: those of all would take many times the memory."""
+    for begin in range(0, len(vertices), _AT_ONCE):
+        yield from vertices[begin : begin + _AT_ONCE].tolist()
+
+
+def _faces(polygons: Polygons) -> Iterator[list[int]]:
+    """Likewise."""
+    end = 0
+    for begin in range(0, len(polygons.sizes), _AT_ONCE):
+        sizes = polygons.sizes[begin : begin + _AT_ONCE].tolist()
+        at, end = end, end + sum(sizes)
+        corners = polygons.vertices[at:end].tolist()
+        place = 0
+        for size in sizes:
+            yield corners[place : place + size]
+            place += size
 
 
 _LINES = {".obj": _lines_of_obj, ".off": _lines_of_off, ".ply": _lines_of_ply}
