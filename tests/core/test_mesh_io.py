@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fuzz.fuzz_readers import damaged, verdict_on
-from hybrid_quad.core import mesh_formats, stl_file
+from hybrid_quad.core import mesh_formats, mesh_io, stl_file
 from hybrid_quad.core.equal_points import merged_points
 from hybrid_quad.core.file_places import MeshFileError, replacing
 from hybrid_quad.core.mesh_io import read_mesh, write_mesh
@@ -528,3 +528,12 @@ def test_damaged_files_are_read_or_refused(tmp_path, first):
         path = tmp_path / f"damaged{suffix}"
         path.write_bytes(data)
         assert verdict_on(path) in ("read", "refused"), seed
+
+
+def test_quads_are_written_the_same_however_many_rows_at_a_time(tmp_path, monkeypatch):
+    vertices, quads = np.arange(60.0).reshape(20, 3) / 7, np.arange(16, dtype=np.int32).reshape(4, 4)
+    write_mesh(tmp_path / "whole.off", vertices, quads)
+    monkeypatch.setattr(mesh_io, "_ROWS_AT_ONCE", 3)
+    write_mesh(tmp_path / "some.off", vertices, quads)
+    assert (tmp_path / "some.off").read_bytes() == (tmp_path / "whole.off").read_bytes()
+    assert np.array_equal(read_mesh(tmp_path / "some.off")[0], vertices)
