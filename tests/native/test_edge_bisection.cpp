@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -144,6 +145,14 @@ TEST(EdgeBisection, ThinSurfacesAreNotCutIntoTooManyPieces) {
   const double length = affordable_length(ribbon, 1e-6, 1000);
   EXPECT_GT(length, 1e-3);
   EXPECT_LT(length, 1e-2);
+}
+
+TEST(EdgeBisection, ASearchForALengthEndsWithoutAnArea) {
+  const TriangleMesh needle = test::flat_grid(1, 1, 1.0, 0.0);
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  affordable_length(needle, 1e-3, no_number);
+  affordable_length(needle, no_number, 1000);
+  affordable_length(needle, 0, 0);
 }
 
 }  // namespace

@@ -364,6 +364,55 @@ TEST(SymmetricRemesh, MakesAWholeOfAHalf) {
   expect_mirrored(result.mesh, 0);
 }
 
+/// A square with a needle of its own beyond its side x = 1, so thin that the whole has area enough and the needle has not.
+PolygonSoup square_with_needle(double width) {
+  PolygonSoup soup = test::soup_of(transformed(test::flat_grid(4, 4), {1, 1, 1}, {-1, 0, 0}));
+  const auto at = [&](const Vector3& p) {
+    return static_cast<int>(std::find(soup.positions.begin(), soup.positions.end(), p) - soup.positions.begin());
+  };
+  const int a = at({-0.25, 0, 0}), b = at({0, 0, 0});
+  soup.face_sizes.push_back(3);
+  for (const int v : {b, a, static_cast<int>(soup.positions.size())}) soup.face_vertices.push_back(v);
+  soup.positions.push_back({0.5, -width, 0});
+  return soup;
+}
+
+TEST(SymmetricRemesh, RefusesANeedleThatIsAllOfTheKeptSide) {
+  RemeshOptions options;
+  options.quads = 100;
+  options.symmetry.planes = kX;
+  for (const double width : {1e-7, 1e-9}) {
+    PolygonSoup soup = square_with_needle(width);
+    for (Vector3& p : soup.positions) p[0] -= 0.1;
+    try {
+      remesh(soup, options, RunContext{});
+      FAIL() << "a needle " << width << " wide";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.code, "thin_component");
+      EXPECT_EQ(error.elements, std::vector<int>{static_cast<int>(soup.face_sizes.size()) - 1});
+    }
+  }
+}
+
+TEST(SymmetricRemesh, LeavesOutANeedleThatACutTakesFromItsPart) {
+  RemeshOptions options;
+  options.quads = 100;
+  options.symmetry.planes = kX;
+  PolygonSoup soup = square_with_needle(1e-6);
+  for (Vector3& p : soup.positions) p[0] -= 0.1;
+  const TriangleMesh ball = transformed(test::icosphere(2), {1, 1, 1}, {0, 5, 0});
+  for (const auto& face : ball.faces()) {
+    soup.face_sizes.push_back(3);
+    for (const int v : face) soup.face_vertices.push_back(v + static_cast<int>(soup.positions.size()));
+  }
+  soup.positions.insert(soup.positions.end(), ball.positions().begin(), ball.positions().end());
+  const RemeshResult result = remesh(soup, options, RunContext{});
+  EXPECT_TRUE(violations_of(result.mesh).empty());
+  EXPECT_EQ(euler_characteristic(result.mesh), 2) << "the ball";
+  ASSERT_EQ(result.report.defects.size(), 1U);
+  EXPECT_EQ(result.report.defects[0].code, "thin_component");
+}
+
 TEST(SymmetricRemesh, DetectsPlanes) {
   const TriangleMesh mesh = transformed(centred_box(4, {1, 2, 3}), {1, 1, 1}, {0, 0.3, 0});
   EXPECT_EQ(remeshed(mesh, 200, 0, 40, true).report.symmetry.planes, kX | kZ);

@@ -157,7 +157,7 @@ double affordable_length(const TriangleMesh& mesh, double longest, double most_p
     double sum = 0;
     for (int h = 0; h < mesh.halfedge_count(); ++h)
       if (mesh.opposite(h) < h && mesh.edge_length(h) > longest) sum += mesh.edge_length(h);
-    if (sum <= 1.01 * most_pieces * longest) return longest;
+    if (!(sum > 1.01 * most_pieces * longest)) return longest;  // nor ever longer where one of them is no number
     longest = sum / most_pieces;
   }
 }

@@ -30,8 +30,6 @@ constexpr double kLooseShare = 0.9;      ///< share of open edges above which a 
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
 constexpr double kMostCoordinate = 1e-3 * std::numeric_limits<double>::max();  ///< beyond it differences, and their sums, overflow
-constexpr double kLeastWidth = 2e-6;     ///< of a part: its area over the square of its box's diagonal (docs/decisions/0050)
-constexpr double kLeastShare = 1e-9;     ///< of the area; parts with less are specks, a thirty thousandth as long as the rest
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
 constexpr double kMostCrowded = 0.5, kMostTorn = 0.1;
@@ -359,40 +357,9 @@ void resolve_faces(BuiltMesh& built) {
   put_in_order(built);
 }
 
-/// The faces of these weights that count, in their order.
-BuiltMesh part_that_counts(const BuiltMesh& built, const std::vector<Weight>& weight) {
-  const TriangleMesh& mesh = built.mesh;
-  BuiltMesh kept;
-  std::vector<int> new_vertex(mesh.vertex_count(), -1), new_face(mesh.face_count(), -1), opposite;
-  std::vector<Vector3> positions;
-  std::vector<std::array<int, 3>> faces;
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    if (weight[f] != Weight::kCounts) continue;
-    new_face[f] = static_cast<int>(kept.input_face.size());
-    kept.input_face.push_back(built.input_face[f]);
-    for (const int v : mesh.face(f)) new_vertex[v] = 0;
-  }
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (new_vertex[v] == 0) {
-      new_vertex[v] = static_cast<int>(positions.size());
-      kept.input_vertex.push_back(built.input_vertex[v]);
-      positions.push_back(mesh.position(v));
-    }
-  for (int f = 0; f < mesh.face_count(); ++f)
-    if (new_face[f] >= 0) {
-      faces.push_back({new_vertex[mesh.face(f)[0]], new_vertex[mesh.face(f)[1]], new_vertex[mesh.face(f)[2]]});
-      for (int h = 3 * f; h < 3 * f + 3; ++h) {
-        const int o = mesh.opposite(h);
-        opposite.push_back(o < 0 ? -1 : 3 * new_face[o / 3] + o % 3);
-      }
-    }
-  kept.mesh = TriangleMesh(std::move(positions), std::move(faces), std::move(opposite));
-  return kept;
-}
-
 /// Drops components without area, and those so small that their quads would have none.
 void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
-  const std::vector<Weight> weight = weight_of_faces(built.mesh, kLeastShare, kLeastWidth);
+  const std::vector<Weight> weight = weight_of_faces(built.mesh);
   const auto polygons_of = [&](Weight of) {
     std::vector<int> list;
     for (std::size_t f = 0; f < weight.size(); ++f)
@@ -409,7 +376,12 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   if (counting == 0) refuse("no_area", "No face of the mesh has an area.", "", {});
   note("thin_component", "face", std::move(thin), "left out: hundreds of thousands of times as long as wide");
   note("tiny_component", "face", polygons_of(Weight::kTiny), "left out: too small beside the rest for quads with an area");
-  built = part_that_counts(built, weight);
+  CountingFaces kept = faces_that_count(built.mesh, weight);
+  for (int& v : kept.vertex) v = built.input_vertex[v];
+  for (int& f : kept.face) f = built.input_face[f];
+  built.mesh = std::move(kept.mesh);
+  built.input_vertex = std::move(kept.vertex);
+  built.input_face = std::move(kept.face);
 }
 
 /// Vertices where the input has them.

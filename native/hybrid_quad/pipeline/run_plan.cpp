@@ -173,6 +173,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
   report.warnings = input.warnings;
   const int images = image_count(report.symmetry.planes);
   RemeshDomain domain = domain_of(built, input.options, input.edge_guides, report.symmetry.planes);
+  report.defects.insert(report.defects.end(), domain.defects.begin(), domain.defects.end());
   HardGuides guides{input.guides.sets, positive_traces(input.guides.traces, report.symmetry.planes)};
   std::vector<Component> components = split_components(domain.mesh);
   report.components = static_cast<int>(images == 1 ? components.size() : split_components(built.mesh).size());

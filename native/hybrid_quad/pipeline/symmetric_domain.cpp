@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/negligible_faces.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -48,6 +50,43 @@ void take_between(const PositivePart& part, const BuiltMesh& built, std::vector<
   density = std::move(taken);
 }
 
+/// Leaves out what a cut left of components with too little area for quads, however much the whole ones have.
+/// \param input_face  #F of the whole: polygon of the soup  \param defects  gets what is left out
+void drop_negligible_components(const std::vector<int>& input_face, PositivePart& part, std::vector<Defect>& defects) {
+  const std::vector<Weight> weight = weight_of_faces(part.mesh);
+  const auto counting = std::count(weight.begin(), weight.end(), Weight::kCounts);
+  if (counting == part.mesh.face_count()) return;
+  const auto polygons_of = [&](Weight of) {
+    std::vector<int> list;
+    for (std::size_t f = 0; f < weight.size(); ++f)
+      if (weight[f] == of) list.push_back(input_face[part.face[f]]);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  };
+  std::vector<int> thin = polygons_of(Weight::kThin), tiny = polygons_of(Weight::kTiny);
+  if (counting == 0 && !thin.empty())
+    throw InputError("thin_component", "What is on the positive side of the mirror planes is as thin as a hair: hundreds of "
+                                       "thousands of times as long as wide.", "face", std::move(thin));
+  if (counting == 0) throw InputError("no_area", "No face on the positive side of the mirror planes has an area.");
+  if (!thin.empty())
+    defects.push_back({"thin_component", "face", std::move(thin), true, false,
+                       "left out on the positive side of the mirror planes: hundreds of thousands of times as long as wide"});
+  if (!tiny.empty())
+    defects.push_back({"tiny_component", "face", std::move(tiny), true, false,
+                       "left out on the positive side of the mirror planes: too small beside the rest for quads with an area"});
+  CountingFaces kept = faces_that_count(part.mesh, weight);
+  PositivePart less;
+  for (const int v : kept.vertex) less.vertex.push_back(part.vertex[v]);
+  for (const int f : kept.face) {
+    less.face.push_back(part.face[f]);
+    less.halfedge.insert(less.halfedge.end(), part.halfedge.begin() + 3 * f, part.halfedge.begin() + 3 * f + 3);
+  }
+  less.mesh = std::move(kept.mesh);
+  less.faces_in_plane = part.faces_in_plane;
+  part = std::move(less);
+}
+
 }  // namespace
 
 std::vector<char> marked_halfedges(const BuiltMesh& built, const std::vector<std::array<int, 2>>& marked) {
@@ -78,6 +117,7 @@ RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, con
     return domain;
   }
   PositivePart part = positive_part(built.mesh, planes);
+  drop_negligible_components(built.input_face, part, domain.defects);
   for (const PositivePart::Origin& origin : part.vertex) {
     domain.values.input_vertex.push_back(static_cast<int>(domain.input_vertex.size()));
     domain.input_vertex.push_back(origin.is_vertex() ? built.input_vertex[origin.vertex[0]] : -1);

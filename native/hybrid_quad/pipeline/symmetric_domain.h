@@ -20,11 +20,14 @@ struct RemeshDomain {
   RemeshOptions options;          ///< with the planes that are used
   BuiltMesh values;               ///< no mesh: where in the arrays of `options` the values of a vertex and a face are
   int faces_in_plane = 0;         ///< left out
+  std::vector<Defect> defects;    ///< of the positive part: components that are left out of it
 };
 
 /// Vertices that a plane made get values between those of their edge's ends; directions, which have no middle, those of the
 /// nearer one.
+/// Components of the positive part with too little area for quads are left out, as build_mesh() leaves them out of the whole.
 /// \param guides  3 #F of built.mesh: as in RemeshDomain
+/// \throws InputError as positive_part(), and thin_component or no_area where none has enough
 RemeshDomain domain_of(const BuiltMesh& built, const RemeshOptions& options, const std::vector<int>& guides, PlaneSet planes);
 
 /// 3 #F: on a marked edge. A pair of polygon-soup vertices may have become several edges.
