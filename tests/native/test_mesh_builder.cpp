@@ -267,6 +267,54 @@ TEST(MeshBuilder, ResolvesFacesWithoutAreaWithoutOpeningHoles) {
     EXPECT_FALSE(has_no_area(built.mesh.position(f[0]), built.mesh.position(f[1]), built.mesh.position(f[2])));
 }
 
+TEST(MeshBuilder, TakesWhiskersAway) {
+  // A collinear polygon in a row of quads beyond the ends of the one edge that it has in common with them.
+  PolygonSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}};
+  add_face(soup, {0, 1, 4, 3});
+  add_face(soup, {1, 2, 5, 4});
+  for (const auto& whisker : {std::vector<int>{0, 1, 8}, std::vector<int>{1, 0, 8, 7, 6, 2}, std::vector<int>{2, 1, 7, 8}}) {
+    PolygonSoup with = soup;
+    add_face(with, whisker);
+    const BuiltMesh built = build_mesh(with);
+    EXPECT_EQ(topology_of(built.mesh), (Topology{1, 1, 1}));
+    EXPECT_NEAR(built.mesh.total_area(), 2, 1e-9);
+    EXPECT_TRUE(faces_without_area(built.mesh).empty());
+    EXPECT_TRUE(has_defect(built.defects, "zero_area_face"));
+    EXPECT_FALSE(has_defect(built.defects, "non_manifold_edge"));
+  }
+}
+
+TEST(MeshBuilder, TakesFacesWithoutAreaAwayAtTheBorder) {
+  // Its longest side, the only open one, cannot be flipped.
+  PolygonSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+  add_face(soup, {0, 1, 3});
+  add_face(soup, {1, 2, 3});
+  add_face(soup, {0, 2, 1});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_EQ(topology_of(built.mesh), (Topology{1, 1, 1}));
+  EXPECT_EQ(built.mesh.face_count(), 2);
+  EXPECT_EQ(boundary_edges(built.mesh), 4);
+  EXPECT_TRUE(faces_without_area(built.mesh).empty());
+}
+
+TEST(MeshBuilder, TellsWhichFacesWithoutAreaStay) {
+  // A torus with a part of its tube collapsed to a line: without it, it would be a sphere.
+  const TriangleMesh ring = test::torus(24, 12);
+  std::vector<Vector3> positions = ring.positions();
+  for (Vector3& p : positions)
+    if (p[0] > 0) p = Vector3(1, p[1], 0);
+  const BuiltMesh built = build_mesh(test::soup_of(TriangleMesh(positions, ring.faces(), ring.opposites())));
+  EXPECT_EQ(topology_of(built.mesh), (Topology{1, 0, 0}));
+  std::size_t gone = 0, left = 0;
+  for (const Defect& defect : built.defects)
+    if (defect.code == "zero_area_face") (defect.kept ? left : gone) += defect.elements.size();
+  EXPECT_GT(gone, 0U);
+  EXPECT_GE(left, 1U);
+  EXPECT_LE(left, faces_without_area(built.mesh).size());
+}
+
 TEST(MeshBuilder, ClosesCracksOfZeroWidth) {
   // A vertex in the middle of an edge of one face only: the other face does not know of it.
   const TriangleMesh sphere = test::icosphere(1);

@@ -49,7 +49,8 @@ def repair(vertices: npt.ArrayLike | MeshLike, faces: FacesLike | None = None) -
     Returns
     -------
     Repaired
-        A manifold, oriented mesh of triangles with area. Vertices without a face are not in it.
+        A manifold, oriented mesh of triangles with area, but for those that `defects` has as kept. Vertices without a face
+        are not in it.
 
     Raises
     ------

@@ -58,6 +58,25 @@ bool resolve(EditableMesh& m, int f) {
   return try_flip(m, h[0]);
 }
 
+/// Takes faces away as long as one can be: the next of a row is at the border only then.
+bool take_away_at_border(EditableMesh& m, const std::vector<int>& faces) {
+  std::vector<int> waiting(faces.rbegin(), faces.rend());
+  bool changed = false;
+  while (!waiting.empty()) {
+    const int f = waiting.back();
+    waiting.pop_back();
+    if (!m.is_face(f) || !is_face_without_area(m, f) || !m.can_take_away(f)) continue;
+    const auto h = by_length(m, f);
+    const auto is_open = [&m](int k) { return m.opposite(k) < 0; };
+    if (std::count_if(h.begin(), h.end(), is_open) == 1 && !is_open(h[0])) continue;
+    for (const int k : h)
+      if (!is_open(k)) waiting.push_back(m.opposite(k) / 3);
+    m.take_away(f);
+    changed = true;
+  }
+  return changed;
+}
+
 }  // namespace
 
 bool has_no_area(const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -65,18 +84,17 @@ bool has_no_area(const Vector3& a, const Vector3& b, const Vector3& c) {
   return !((b - a).cross(c - a).norm() > kRelativeHeight * longest2);
 }
 
-bool has_faces_without_area(const TriangleMesh& mesh) {
-  return std::any_of(mesh.faces().begin(), mesh.faces().end(), [&mesh](const std::array<int, 3>& t) {
-    return has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
-  });
+std::vector<int> faces_without_area(const TriangleMesh& mesh) {
+  std::vector<int> list;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto& t = mesh.face(f);
+    if (has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]))) list.push_back(f);
+  }
+  return list;
 }
 
 ResolvedMesh resolve_faces_without_area(const TriangleMesh& mesh) {
-  std::vector<int> waiting;
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const auto& t = mesh.face(f);
-    if (has_no_area(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]))) waiting.push_back(f);
-  }
+  std::vector<int> waiting = faces_without_area(mesh);
   ResolvedMesh result;
   if (waiting.empty()) {
     result.mesh = mesh;
@@ -97,6 +115,7 @@ ResolvedMesh resolve_faces_without_area(const TriangleMesh& mesh) {
       if (edited.is_face(f) && is_face_without_area(edited, f)) left.push_back(f);
     }
     waiting = std::move(left);
+    if (!changed) changed = take_away_at_border(edited, waiting);
   }
   auto compacted = edited.compacted();
   result.mesh = std::move(compacted.mesh);

@@ -15,9 +15,10 @@ struct ResolvedMesh {
 };
 
 /// Removes faces without area by flipping the longest side of caps and collapsing the short side of needles, so that the
-/// surface's topology and shape stay. Faces that neither can remove remain.
+/// surface's topology and shape stay. At the border those that neither can remove are taken away, with vertices that no other face
+/// has; but not caps with another side there than their longest, which would open a slit. What keeps parts together remains.
 ResolvedMesh resolve_faces_without_area(const TriangleMesh& mesh);
 
-bool has_faces_without_area(const TriangleMesh& mesh);
+std::vector<int> faces_without_area(const TriangleMesh& mesh);
 
 }  // namespace hybrid_quad

@@ -194,6 +194,30 @@ void EditableMesh::collapse(int h) {
   for (int i = 0; i < count; ++i) update_outgoing(touched[i], opens);
 }
 
+bool EditableMesh::can_take_away(int f) const {
+  int open = 0, side = -1;  // the last that is boundary
+  for (int h = 3 * f; h < 3 * f + 3; ++h)
+    if (opposite_[h] < 0) {
+      ++open;
+      side = h;
+    }
+  // An apex at the boundary would have two fans.
+  return open == 2 || (open == 1 && !is_boundary_vertex(apex(side)) && opposite_[next(side)] != previous(side));
+}
+
+void EditableMesh::take_away(int f) {
+  // The fans of vertices at the boundary start there.
+  for (int h = 3 * f; h < 3 * f + 3; ++h)
+    if (opposite_[h] < 0 && opposite_[previous(h)] < 0) outgoing_[origin_[h]] = -1;
+  for (int h = 3 * f; h < 3 * f + 3; ++h) {
+    const int o = opposite_[h];
+    if (o < 0) continue;
+    opposite_[o] = -1;
+    outgoing_[origin_[o]] = o;
+  }
+  for (int h = 3 * f; h < 3 * f + 3; ++h) origin_[h] = opposite_[h] = -1;
+}
+
 EditableMesh::Compacted EditableMesh::compacted() const {
   std::vector<int> vertices, faces;
   for (int v = 0; v < vertex_slots(); ++v)

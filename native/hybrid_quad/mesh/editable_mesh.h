@@ -47,6 +47,10 @@ class EditableMesh {
   bool can_collapse(int h) const;
   /// Merges from(h) into to(h). \pre can_collapse(h)
   void collapse(int h);
+  /// Whether the surface stays a manifold of the same topology without this face at its boundary.
+  bool can_take_away(int f) const;
+  /// Takes a face at the boundary away, whose other sides then are boundary. \pre can_take_away(f)
+  void take_away(int f);
 
   /// Calls visit(h) for each half-edge that leaves v, counterclockwise.
   template <class Visit>

@@ -20,6 +20,7 @@
 #include "hybrid_quad/mesh/t_junctions.h"
 #include "hybrid_quad/mesh/vertex_spread.h"
 #include "hybrid_quad/mesh/vertex_welding.h"
+#include "hybrid_quad/mesh/whiskers.h"
 
 namespace hybrid_quad {
 
@@ -59,9 +60,11 @@ class MeshBuilder {
   bool merge_vertices(const std::vector<int>& target);
   void drop_copied_parts();
   void drop_duplicates();
-  void drop(const std::vector<char>& is_copy);
+  std::vector<int> drop(const std::vector<char>& goes);
+  void drop_copies(const std::vector<char>& is_copy);
   BuiltMesh glue();
   void drop_negligible_components(BuiltMesh& built);
+  void tell_of_remaining_faces(const BuiltMesh& built);
   void put_back(BuiltMesh& built) const;
 
   std::vector<int> as_given(const char* kind, std::vector<int> elements) const {
@@ -211,7 +214,7 @@ void MeshBuilder::make_triangles() {
   }
   note("too_few_corners", "face", std::move(few), "left out");
   note("repeated_index_face", "face", std::move(repeated), "repeated corners are left out");
-  note("zero_area_face", "face", std::move(flat), "removed by flips and collapses");
+  note("zero_area_face", "face", std::move(flat), "removed by flips and collapses, or taken away at a border");
 }
 
 /// Replaces vertices by their targets and drops triangles that this closes; true if any vertex changed.
@@ -281,18 +284,19 @@ void MeshBuilder::drop_duplicates() {
   std::vector<char> is_copy(triangles_.size(), 0);
   for (std::size_t i = 1; i < keys.size(); ++i)
     if (keys[i].first == keys[i - 1].first) is_copy[keys[i].second] = 1;
-  drop(is_copy);
+  drop_copies(is_copy);
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
   note("duplicate_face", "face", copies_, "left out");
 }
 
-/// Leaves copies of other triangles out.
-void MeshBuilder::drop(const std::vector<char>& is_copy) {
+/// Leaves triangles out. \return their polygons
+std::vector<int> MeshBuilder::drop(const std::vector<char>& goes) {
+  std::vector<int> dropped;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    if (is_copy[i]) {
-      copies_.push_back(polygon_[i]);
+    if (goes[i]) {
+      dropped.push_back(polygon_[i]);
       continue;
     }
     triangles_[kept] = triangles_[i];
@@ -300,10 +304,17 @@ void MeshBuilder::drop(const std::vector<char>& is_copy) {
   }
   triangles_.resize(kept);
   polygon_.resize(kept);
+  return dropped;
+}
+
+/// Leaves copies of other triangles out.
+void MeshBuilder::drop_copies(const std::vector<char>& is_copy) {
+  const std::vector<int> dropped = drop(is_copy);
+  copies_.insert(copies_.end(), dropped.begin(), dropped.end());
 }
 
 /// Before cracks are closed: a part would be joined to what it lies on, along its border.
-void MeshBuilder::drop_copied_parts() { drop(copied_parts(positions_, triangles_)); }
+void MeshBuilder::drop_copied_parts() { drop_copies(copied_parts(positions_, triangles_)); }
 
 BuiltMesh MeshBuilder::glue() {
   ManifoldGluing glued = glue_triangles(positions_, triangles_);
@@ -347,7 +358,7 @@ void put_in_order(BuiltMesh& built) {
 
 /// Flips and collapses faces without area away, one after the other.
 void resolve_faces(BuiltMesh& built) {
-  if (!has_faces_without_area(built.mesh)) return;
+  if (faces_without_area(built.mesh).empty()) return;
   ResolvedMesh resolved = resolve_faces_without_area(built.mesh);
   for (int& v : resolved.vertex_source) v = built.input_vertex[v];
   for (int& f : resolved.face_source) f = built.input_face[f];
@@ -384,6 +395,24 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   built.input_face = std::move(kept.face);
 }
 
+/// Of faces without area, those that could not go are not said to have gone.
+void MeshBuilder::tell_of_remaining_faces(const BuiltMesh& built) {
+  const std::vector<int> faces = faces_without_area(built.mesh);
+  if (faces.empty()) return;
+  std::vector<int> left;
+  for (const int f : faces) left.push_back(built.input_face[f]);
+  left = as_given("face", std::move(left));
+  std::sort(left.begin(), left.end());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
+  const auto noted = std::find_if(defects.begin(), defects.end(), [](const Defect& d) { return d.code == "zero_area_face"; });
+  if (noted != defects.end()) {
+    std::vector<int>& gone = noted->elements;
+    gone.erase(std::remove_if(gone.begin(), gone.end(), [&](int f) { return std::binary_search(left.begin(), left.end(), f); }), gone.end());
+    if (gone.empty()) defects.erase(noted);
+  }
+  defects.push_back({"zero_area_face", "face", std::move(left), true, true, "stays: without it the surface would have another topology"});
+}
+
 /// Vertices where the input has them.
 void MeshBuilder::put_back(BuiltMesh& built) const {
   std::vector<Vector3> given;
@@ -407,6 +436,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   drop_duplicates();
   context.checkpoint();
+  drop(whiskers(positions_, triangles_));
   if (triangles_.empty()) refuse("no_area", "No face of the mesh has an area.", "", {});
   std::vector<int> split_at;
   if (!is_closed_ || !copies_.empty()) split_at = split_at_t_junctions(positions_, kCrackWidth, triangles_, polygon_);
@@ -421,6 +451,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   resolve_faces(built);
   drop_negligible_components(built);
+  tell_of_remaining_faces(built);
   put_back(built);
   check_digits(built.mesh);
   for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
