@@ -201,6 +201,20 @@ TEST(PositivePart, VerticesNearThePlaneMoveOntoIt) {
   EXPECT_EQ(part.mesh.face_count(), box.face_count() / 2) << "nothing is cut";
 }
 
+TEST(PositivePart, AThinPlateKeepsItsMiddle) {
+  // A hundredth as thick as it is long: its sides are nearer to the plane than a fiftieth of their edges.
+  for (const double thickness : {0.01, 0.003}) {
+    const TriangleMesh plate = centred_box(4, {1, 1, thickness});
+    for (const PlaneSet planes : {kZ, PlaneSet(kX | kY | kZ)}) {
+      const PositivePart part = positive_part(plate, planes);
+      EXPECT_EQ(part.mesh.euler_characteristic(), 1);
+      EXPECT_EQ(part.faces_in_plane, 0);
+      const double images = planes == kZ ? 2 : 8;
+      EXPECT_NEAR(images * part.mesh.total_area(), plate.total_area(), 1e-9);
+    }
+  }
+}
+
 TEST(PositivePart, RefusesASurfaceThatThePlaneMisses) {
   const auto code = [](const TriangleMesh& mesh, PlaneSet planes) {
     try {

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/mesh/surface_index.h"
 #include "hybrid_quad/symmetry/symmetry.h"
 
 namespace hybrid_quad {
@@ -13,17 +15,56 @@ namespace {
 
 using Origin = PositivePart::Origin;
 
+/// Where a surface has two sides so near to each other that moving vertices on to a plane would press them together.
+class ThinPlaces {
+ public:
+  ThinPlaces(const TriangleMesh& mesh, int axis) : mesh_(mesh), axis_(axis) {}
+
+  /// Whether a face that faces the other way, and does not meet v, is within some heights of v over the plane.
+  bool is_thin_at(int v) {
+    constexpr double kHeights = 10, kAlong = 0.5, kOpposed = -0.5;  // cosines
+    const Vector3& p = mesh_.position(v);
+    const double reach = kHeights * std::abs(p[axis_]);
+    const auto is_opposed = [&](int f, const Vector3& normal) {
+      const auto& t = mesh_.face(f);
+      if (t[0] == v || t[1] == v || t[2] == v || index_->normal(f).dot(normal) > kOpposed) return false;
+      return (nearest_on_triangle(p, mesh_.position(t[0]), mesh_.position(t[1]), mesh_.position(t[2])) - p).norm() < reach;
+    };
+    const int start = mesh_.outgoing(v);
+    for (int h = start; h >= 0;) {
+      const Vector3 normal = mesh_.normal(h / 3);
+      // Moved along itself, a surface does not get thinner.
+      if (std::abs(normal[axis_]) > kAlong) {
+        if (!index_) index_ = std::make_unique<const SurfaceIndex>(mesh_, std::vector<int>{});
+        const Vector3 half = Vector3::Constant(reach);
+        if (index_->any_in_box(p - half, p + half, [&](int f) { return is_opposed(f, normal); })) return true;
+      }
+      h = mesh_.rotate_ccw(h);
+      if (h == start) break;
+    }
+    return false;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  int axis_;
+  std::unique_ptr<const SurfaceIndex> index_;
+};
+
 /// Moves vertices on to the plane that are nearer to it than a small part of their shortest edge (or than rounding), so
-/// that the cut makes no needles.
+/// that the cut makes no needles; not where that would press two sides of a thin surface together.
 void snap_to_plane(const TriangleMesh& mesh, int axis, std::vector<Vector3>& positions) {
   constexpr double kPartOfEdge = 0.02, kRounding = 1e-7;  // of the diagonal
   const double rounding = kRounding * mesh.diagonal();
   std::vector<double> shortest(mesh.vertex_count(), std::numeric_limits<double>::infinity());
   for (int h = 0; h < mesh.halfedge_count(); ++h)
     for (const int v : {mesh.from(h), mesh.to(h)}) shortest[v] = std::min(shortest[v], mesh.edge_length(h));
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (std::isfinite(shortest[v]) && std::abs(positions[v][axis]) <= std::max(rounding, kPartOfEdge * shortest[v]))
-      positions[v][axis] = 0.0;
+  ThinPlaces thin(mesh, axis);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double height = std::abs(positions[v][axis]);
+    if (!std::isfinite(shortest[v]) || height > std::max(rounding, kPartOfEdge * shortest[v])) continue;
+    if (height <= rounding || !thin.is_thin_at(v)) positions[v][axis] = 0.0;
+  }
 }
 
 /// Clips a mesh at one plane.
