@@ -437,6 +437,19 @@ TEST(SymmetricRemesh, DetectsPlanes) {
   EXPECT_EQ(none.mesh.positions, plain.mesh.positions) << "nothing found changes nothing";
 }
 
+TEST(SymmetricRemesh, DetectsNoPlanesThatLeaveNothing) {
+  const TriangleMesh square = transformed(test::flat_grid(6, 6), {1, 1, 1}, {-0.5, -0.5, 0});
+  EXPECT_EQ(remeshed(square, 100, 0, 40, true).report.symmetry.planes, kX | kY) << "it lies in the third";
+  // What x = 0 leaves of two crossing squares lies in y = 0.
+  std::vector<Vector3> upright, crossing;
+  for (const Vector3& p : square.positions()) {
+    upright.push_back({0, p[0], p[1]});
+    crossing.push_back({p[0], 0, p[1]});
+  }
+  const TriangleMesh cross = joined(TriangleMesh(upright, square.faces()), TriangleMesh(crossing, square.faces()));
+  EXPECT_EQ(remeshed(cross, 100, 0, 40, true).report.symmetry.planes, kX | kZ);
+}
+
 TEST(SymmetricRemesh, KeepsMarkedEdgesAndForgetsSmoothSeams) {
   // The outer circle of a torus is marked; the plane x = 0 crosses it, the plane z = 0 contains it.
   const TriangleMesh ring = test::torus(24, 12);

@@ -11,13 +11,29 @@
 
 namespace hybrid_quad {
 
+namespace {
+
+/// Whether quads can be made of what the planes leave.
+bool can_be_mirrored(const TriangleMesh& mesh, PlaneSet planes) {
+  try {
+    const std::vector<Weight> weight = weight_of_faces(positive_part(mesh, planes).mesh);
+    return std::find(weight.begin(), weight.end(), Weight::kCounts) != weight.end();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 SymmetryRecord settle_symmetry(const SymmetryOptions& options, const TriangleMesh& mesh, const RunContext& context) {
   SymmetryRecord record;
   record.is_measured = true;
   record.deviation = plane_deviations(mesh, context);
   record.planes = options.planes;
   for (int axis = 0; axis < 3; ++axis)
-    if (options.detect && record.deviation[axis].largest <= options.tolerance) record.planes |= plane(axis);
+    if (options.detect && !has_plane(record.planes, axis) && record.deviation[axis].largest <= options.tolerance &&
+        can_be_mirrored(mesh, record.planes | plane(axis)))
+      record.planes |= plane(axis);
   return record;
 }
 

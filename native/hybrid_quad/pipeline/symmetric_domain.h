@@ -7,7 +7,8 @@
 
 namespace hybrid_quad {
 
-/// Which mirror planes a run uses, and how symmetric the surface is about each.
+/// Which mirror planes a run uses, and how symmetric the surface is about each. Detected ones that leave nothing, as of a flat surface
+/// in the plane, or cannot go with those before them, are not used.
 SymmetryRecord settle_symmetry(const SymmetryOptions& options, const TriangleMesh& mesh, const RunContext& context);
 
 /// The mesh that is remeshed: the input, or its positive part, and what is asked of it.

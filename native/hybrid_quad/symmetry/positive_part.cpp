@@ -70,7 +70,9 @@ void snap_to_plane(const TriangleMesh& mesh, int axis, std::vector<Vector3>& pos
 /// Clips a mesh at one plane.
 class PlaneCut {
  public:
-  PlaneCut(const TriangleMesh& mesh, int axis) : mesh_(mesh), axis_(axis), positions_(mesh.positions()) {
+  /// \param is_first  no other plane cut the surface before
+  PlaneCut(const TriangleMesh& mesh, int axis, bool is_first)
+      : mesh_(mesh), axis_(axis), is_first_(is_first), positions_(mesh.positions()) {
     snap_to_plane(mesh, axis, positions_);
     for (int v = 0; v < mesh.vertex_count(); ++v) vertex_.push_back({{v, -1, -1}, {1, 0, 0}});
   }
@@ -168,7 +170,9 @@ class PlaneCut {
   void refuse_if_useless() const {
     const std::string name = std::string(1, "xyz"[axis_]) + " = 0";
     if (faces_.empty())
-      throw InputError("symmetry_side_empty", "Nothing of the surface is on the positive side of the mirror plane " + name + ".");
+      throw InputError("symmetry_side_empty", (is_first_ ? "Nothing of the surface is on the positive side of the mirror plane "
+                                                         : "Nothing that other mirror planes leave is on the positive side of ") +
+                                                  name + (in_plane_ > 0 ? "; faces in the plane are left out." : "."));
     bool reaches = below_;
     for (std::size_t h = 0; h < opposite_.size() && !reaches; ++h)
       reaches = opposite_[h] < 0 && height(faces_[h / 3][h % 3]) == 0 && height(faces_[h / 3][(h % 3 + 1) % 3]) == 0;
@@ -201,6 +205,7 @@ class PlaneCut {
 
   const TriangleMesh& mesh_;
   int axis_;
+  bool is_first_;
   std::vector<Vector3> positions_;
   std::vector<Origin> vertex_;
   std::vector<std::array<int, 3>> faces_;
@@ -259,7 +264,7 @@ PositivePart positive_part(const TriangleMesh& mesh, PlaneSet planes) {
   bool any = false;
   for (int axis = 0; axis < 3; ++axis) {
     if (!has_plane(planes, axis)) continue;
-    part = any ? composed(PlaneCut(part.mesh, axis).run(), part) : PlaneCut(mesh, axis).run();
+    part = any ? composed(PlaneCut(part.mesh, axis, false).run(), part) : PlaneCut(mesh, axis, true).run();
     any = true;
   }
   if (!any) throw InternalError("symmetry", "no plane to cut at");
