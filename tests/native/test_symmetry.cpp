@@ -450,6 +450,23 @@ TEST(SymmetricRemesh, DetectsNoPlanesThatLeaveNothing) {
   EXPECT_EQ(remeshed(cross, 100, 0, 40, true).report.symmetry.planes, kX | kZ);
 }
 
+TEST(SymmetricRemesh, TellsOfAPieceThatIsLost) {
+  // A flat ring around a ball, in the mirror plane: without it, the Euler characteristics sum up to the same.
+  const TriangleMesh ball = test::icosphere(2);
+  const TriangleMesh tube = test::open_cylinder(24, 2);
+  std::vector<Vector3> ring = tube.positions();
+  double low = HUGE_VAL;
+  for (const Vector3& p : ring) low = std::min(low, p[2]);
+  for (Vector3& p : ring) p = (2 + p[2] - low) * Vector3(p[0], p[1], 0).normalized();
+  const TriangleMesh both = joined(ball, TriangleMesh(ring, tube.faces()));
+  const auto tells = [](const RemeshResult& result) {
+    const std::vector<std::string>& warnings = result.report.warnings;
+    return std::find(warnings.begin(), warnings.end(), "the mirrored surface has another topology than the input") != warnings.end();
+  };
+  EXPECT_TRUE(tells(remeshed(both, 200, kZ)));
+  EXPECT_FALSE(tells(remeshed(both, 200, kX)));
+}
+
 TEST(SymmetricRemesh, KeepsMarkedEdgesAndForgetsSmoothSeams) {
   // The outer circle of a torus is marked; the plane x = 0 crosses it, the plane z = 0 contains it.
   const TriangleMesh ring = test::torus(24, 12);

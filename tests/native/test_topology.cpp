@@ -39,6 +39,13 @@ TEST(Topology, TellsApartWhatTheEulerCharacteristicDoesNot) {
   EXPECT_NE(topology_of(two), topology_of(test::icosphere(1)));
 }
 
+TEST(Topology, OfEveryPiece) {
+  EXPECT_EQ(euler_characteristics_of_pieces(beside(test::icosphere(1), test::open_cylinder(8, 3))), (std::vector<int>{0, 2}));
+  EXPECT_EQ(euler_characteristics_of_pieces(test::icosphere(1)), (std::vector<int>{2}));
+  EXPECT_EQ(euler_characteristics_of_pieces(test::even_quads(3, 0)), (std::vector<int>{1}));
+  EXPECT_EQ(euler_characteristics_of_pieces(TriangleMesh()), std::vector<int>());
+}
+
 TEST(Topology, OfQuads) {
   EXPECT_EQ(topology_of(test::quad_torus(5, 4)), (Topology{1, 0, 0}));
   EXPECT_EQ(topology_of(test::quad_tube(5, 3)), (Topology{1, 0, 2}));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "hybrid_quad/mesh/quad_complex.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
@@ -25,5 +27,11 @@ Topology topology_of(const QuadComplex& complex);
 /// Of an indexed mesh, which knows sides by their ends alone: a hole with two sides is none there.
 /// \throws InternalError as complex_of_quads
 Topology topology_of(const QuadMesh& mesh);
+
+/// Of every connected piece, in ascending order: tells apart what their sum cannot, as a sphere and a ring from a sphere.
+/// \pre no vertex is in two pieces
+std::vector<int> euler_characteristics_of_pieces(const TriangleMesh& mesh);
+/// \throws InternalError as complex_of_quads
+std::vector<int> euler_characteristics_of_pieces(const QuadMesh& mesh);
 
 }  // namespace hybrid_quad

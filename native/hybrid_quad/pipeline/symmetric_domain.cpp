@@ -6,6 +6,7 @@
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/mesh/negligible_faces.h"
+#include "hybrid_quad/mesh/topology.h"
 #include "hybrid_quad/pipeline/curve_counts.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
 
@@ -165,7 +166,7 @@ std::vector<std::string> symmetry_warnings(const RemeshDomain& domain, const Tri
   std::vector<std::string> warnings;
   if (domain.faces_in_plane > 0)
     warnings.push_back(std::to_string(domain.faces_in_plane) + " faces in a mirror plane are left out");
-  if (euler_characteristic(result) != input.euler_characteristic())
+  if (euler_characteristics_of_pieces(result) != euler_characteristics_of_pieces(input))
     warnings.push_back("the mirrored surface has another topology than the input");
   return warnings;
 }
