@@ -19,6 +19,7 @@ NO_ELEMENTS = {
     "no_area",
     "malformed_faces",
     "coordinates_too_coarse",
+    "coordinates_too_small",
     "symmetry_side_empty",
     "symmetry_plane_missed",
     "symmetry_edge_in_two_planes",

@@ -482,9 +482,14 @@ TEST(MeshBuilder, RefusesCoordinatesThatOverflowOrHaveNoDigits) {
   EXPECT_EQ(refusal(soup), "coordinates_too_large");
   for (Vector3& p : soup.positions) p *= 1e-8;
   EXPECT_EQ(refusal(soup), "");
+  for (const double size : {1e-308, 1e-312, 1e-316, 1e-318, 1e-320}) {
+    soup = test::soup_of(test::icosphere(1));
+    for (Vector3& p : soup.positions) p *= size;
+    EXPECT_EQ(refusal(soup), "coordinates_too_small") << size;
+  }
   soup = test::soup_of(test::icosphere(1));
-  for (Vector3& p : soup.positions) p *= 1e-320;
-  EXPECT_EQ(refusal(soup), "coordinates_too_coarse");
+  for (Vector3& p : soup.positions) p *= 1e-307;
+  EXPECT_EQ(refusal(soup), "");
 }
 
 /// Each is a reason to refuse the mesh, and none hides what else is wrong with it.

@@ -28,6 +28,7 @@ WORDS = {
     "coordinate_outlier": ("vertex much too far off", "vertices much too far off"),
     "index_out_of_range": ("face with an unknown vertex", "faces with unknown vertices"),
     "coordinates_too_large": ("vertex with too large coordinates", "vertices with too large coordinates"),
+    "coordinates_too_small": ("mesh too small to compute with", "mesh too small to compute with"),
     "coordinates_too_coarse": ("mesh too far from its origin", "mesh too far from its origin"),
     "malformed_faces": ("malformed face", "malformed faces"),
     "empty_mesh": ("mesh without faces", "mesh without faces"),

@@ -30,6 +30,7 @@ constexpr double kOutlierFactor = 1e8;   ///< how many times farther than nearly
 constexpr double kLooseShare = 0.9;      ///< share of open edges above which a mesh is a soup of loose triangles
 constexpr double kCrackWidth = 1e-9;     ///< over the diagonal: a vertex that near to an open edge lies on it
 constexpr double kLooseTolerance = 2e-5; ///< corners of a soup that near (over the diagonal) are one
+constexpr double kLeastSize = 4 * std::numeric_limits<double>::min();  ///< half the longest side; below it digits are lost, and reciprocals overflow
 constexpr double kMostCoordinate = 1e-3 * std::numeric_limits<double>::max();  ///< beyond it differences, and their sums, overflow
 /// Edges with more than two faces, and sides that part there, over the number of triangles, from which on it is no surface that is
 /// cut but a volume's inside. A surface has 1.5 edges a triangle.
@@ -164,8 +165,8 @@ void MeshBuilder::normalize_positions() {
   const Vector3 half = high - centre;
   const double size = half.maxCoeff();
   if (!(size > 0)) refuse("no_area", "All vertices lie at the same place.", "", {});
-  // Below the least normal number digits are lost as they are far from the origin.
-  farthest_ = std::max(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), std::numeric_limits<double>::min());
+  if (size < kLeastSize) refuse("coordinates_too_small", "The mesh is too small to compute with.", "", {});
+  farthest_ = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
   if (size < kLeastExtent * farthest_) refuse_coarse_coordinates();
   const double diagonal = 2 * (half / size).norm();  // over `size`: squares of tiny or huge numbers are lost
   positions_.reserve(given.size());
