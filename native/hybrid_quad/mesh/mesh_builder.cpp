@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -59,6 +60,7 @@ class MeshBuilder {
   void weld();
   void weld_exactly();
   bool merge_vertices(const std::vector<int>& target);
+  void note_targets(const std::vector<int>& target);
   void drop_copied_parts();
   void drop_duplicates();
   std::vector<int> drop(const std::vector<char>& goes);
@@ -91,6 +93,7 @@ class MeshBuilder {
   std::vector<int> polygon_;        ///< of each triangle
   bool is_closed_ = false;   ///< no edge was open when vertices were last welded
   std::vector<int> welded_;  ///< vertices merged with others at the same place
+  std::vector<int> target_;  ///< the vertex that each was merged into, in however many steps; empty: none was
   std::vector<int> copies_;  ///< polygons left out, whole or in part, because others lie there
 };
 
@@ -245,12 +248,19 @@ std::vector<int> merged(const std::vector<int>& target) {
   return list;
 }
 
+void MeshBuilder::note_targets(const std::vector<int>& target) {
+  if (target_.empty()) target_ = target;
+  else
+    for (int& v : target_) v = target[v];
+}
+
 void MeshBuilder::weld_exactly() {
   const auto open = open_edges(triangles_);
   is_closed_ = open.empty();
   if (is_closed_) return;
   const std::vector<int> target = welded_vertices(positions_, open);
   if (!merge_vertices(target)) return;
+  note_targets(target);
   const std::vector<int> list = merged(target);
   welded_.insert(welded_.end(), list.begin(), list.end());
   std::sort(welded_.begin(), welded_.end());
@@ -266,6 +276,7 @@ void MeshBuilder::weld() {
   merge_vertices(target);
   if (open_edge_share(triangles_) < 0.5) {
     note("nearly_welded_vertex", "vertex", merged(target), "merged with the vertex next to it");
+    note_targets(target);
   } else {
     triangles_ = triangles;
     polygon_ = polygon;
@@ -457,6 +468,9 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_digits(built.mesh);
   for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
   for (int& f : built.input_face) f = ordered_.given_face[f];
+  built.welded_into.resize(given_.positions.size());
+  std::iota(built.welded_into.begin(), built.welded_into.end(), 0);
+  for (std::size_t v = 0; v < target_.size(); ++v) built.welded_into[ordered_.given_vertex[v]] = ordered_.given_vertex[target_[v]];
   return built;
 }
 

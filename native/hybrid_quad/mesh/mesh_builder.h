@@ -31,6 +31,7 @@ struct BuiltMesh {
   TriangleMesh mesh;
   std::vector<int> input_vertex;  ///< #V: polygon-soup vertex it came from
   std::vector<int> input_face;    ///< #F: polygon it is part of
+  std::vector<int> welded_into;   ///< one for each vertex of the polygon soup: the one that it was merged into, or itself
   std::vector<Defect> defects;    ///< what was found, and repaired, on the way
 };
 

@@ -70,7 +70,7 @@ std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<Cur
   std::map<std::array<int, 2>, int> curve_of;
   for (std::size_t i = 0; i < asked.size(); ++i)
     for (std::size_t k = 0; k + 1 < asked[i].vertices.size(); ++k)
-      curve_of[sorted_pair(asked[i].vertices[k], asked[i].vertices[k + 1])] = static_cast<int>(i);
+      curve_of.emplace(sorted_pair(asked[i].vertices[k], asked[i].vertices[k + 1]), static_cast<int>(i));
   for (int h = 0; h < built.mesh.halfedge_count(); ++h) {
     const auto found = curve_of.find(sorted_pair(built.input_vertex[built.mesh.from(h)], built.input_vertex[built.mesh.to(h)]));
     if (found != curve_of.end()) on[h] = found->second;
@@ -80,9 +80,13 @@ std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<Cur
 
 CurveCountLedger::CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, double scale, int images)
     : asked_(asked), accounts_(asked.size()), images_(images) {
+  std::map<std::array<int, 2>, std::size_t> curve_of;
   for (std::size_t i = 0; i < asked.size(); ++i)
-    for (std::size_t k = 0; k + 1 < asked[i].vertices.size(); ++k)
-      accounts_[i].length += (soup.positions[asked[i].vertices[k + 1]] - soup.positions[asked[i].vertices[k]]).norm() / scale;
+    for (std::size_t k = 0; k + 1 < asked[i].vertices.size(); ++k) {
+      const int a = asked[i].vertices[k], b = asked[i].vertices[k + 1];
+      accounts_[i].length += (soup.positions[b] - soup.positions[a]).norm() / scale;
+      if (a != b && curve_of.emplace(sorted_pair(a, b), i).first->second != i) accounts_[i].is_shared = true;
+    }
 }
 
 std::vector<CountedChain> CurveCountLedger::chains_on(const TriangleMesh& component, const std::vector<int>& face,
@@ -116,8 +120,11 @@ void CurveCountLedger::record(const ComponentPlan& plan, const QuadMesh& mesh) {
 }
 
 std::string CurveCountLedger::reason_for(const Account& account, int asked, int parts) const {
-  if (account.got == 0)
+  constexpr double kWhole = 1 - 1e-6;
+  if (account.is_shared) return "where the input was repaired, it lies on another of these curves";
+  if (!(account.found_length > 0))
     return images_ > 1 ? "it is not on the side of a mirror plane that is kept" : "its edges went when the input was repaired";
+  if (images_ == 1 && account.found_length < kWhole * account.length) return "some of its edges went when the input was repaired";
   if (asked % parts != 0) return "a mirror plane cuts it into equal parts";
   if (account.got == account.planned && account.obstacle == CountObstacle::kParity)
     return "with quads alone, this curve and those that close it to a loop need an even number together";

@@ -16,7 +16,7 @@ std::vector<int> counted_halfedges(const BuiltMesh& built, const std::vector<Cur
 /// The asked curves as far as they lie on each component, and what comes out on them.
 class CurveCountLedger {
  public:
-  /// \param scale  length in the soup of what is 1 long on the components
+  /// \param asked  as asked_after_repair() has them  \param scale  length in the soup of what is 1 long on the components
   /// \param images  mirror images that the remeshed part and the whole consist of
   CurveCountLedger(const std::vector<CurveCount>& asked, const PolygonSoup& soup, double scale, int images);
 
@@ -36,6 +36,7 @@ class CurveCountLedger {
     double found_length = 0;  ///< on components so far
     int got = 0, planned = 0;
     CountObstacle obstacle = CountObstacle::kNone;
+    bool is_shared = false;   ///< where repairs of the input brought it, another curve lies
   };
   std::string reason_for(const Account& account, int asked, int parts) const;
 

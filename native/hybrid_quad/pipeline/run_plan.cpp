@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid_quad/pipeline/asked_after_repair.h"
 #include "hybrid_quad/pipeline/snapshots.h"
 #include "hybrid_quad/pipeline/stage_cache.h"
 #include "hybrid_quad/sizing/asked_lengths.h"
@@ -155,6 +156,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
     check_curve_counts(soup, options.curve_counts);
     return recalled(context.cache, {StageCache::Level::kMesh, "mesh"}, [&] { return build_mesh(soup, mesh_context); });
   });
+  options = clock.measure("mesh", [&] { return asked_after_repair(soup, as_given, options, report.warnings); });
   report.defects = as_given.defects;
   report.input_vertices = static_cast<int>(soup.positions.size());
   report.input_faces = static_cast<int>(soup.face_sizes.size());
@@ -170,7 +172,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
     return with_guides(std::move(as_given), report.input_vertices, options, context.in_stage("mesh", 0.02, 0.02));
   });
   const BuiltMesh& built = input.built;
-  report.warnings = input.warnings;
+  report.warnings.insert(report.warnings.end(), input.warnings.begin(), input.warnings.end());
   const int images = image_count(report.symmetry.planes);
   RemeshDomain domain = domain_of(built, input.options, input.edge_guides, report.symmetry.planes);
   report.defects.insert(report.defects.end(), domain.defects.begin(), domain.defects.end());
