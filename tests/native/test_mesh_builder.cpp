@@ -12,6 +12,7 @@
 #include "hybrid_quad/mesh/degenerate_faces.h"
 #include "hybrid_quad/mesh/editable_mesh.h"
 #include "hybrid_quad/mesh/mesh_builder.h"
+#include "hybrid_quad/mesh/polygon_cuts.h"
 #include "hybrid_quad/mesh/topology.h"
 #include "support/meshes.h"
 
@@ -226,6 +227,56 @@ TEST(MeshBuilder, DropsCopiesAndRepeatedCorners) {
   EXPECT_TRUE(has_defect(built.defects, "duplicate_face"));
   EXPECT_TRUE(has_defect(built.defects, "repeated_index_face"));
   EXPECT_EQ(input_faces(built), cyclic(sphere.faces()));
+}
+
+/// A polygon from another corner on, or the other way round.
+std::vector<int> turned(std::vector<int> polygon, int by, bool is_reversed) {
+  std::rotate(polygon.begin(), polygon.begin() + by, polygon.end());
+  if (is_reversed) std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+TEST(MeshBuilder, DropsCopiesOfPolygonsFromAnyCornerAndEitherWayRound) {
+  for (const int corners : {4, 5, 6, 24})
+    for (const double bend : {0.0, 0.3})
+      for (const int by : {0, 1, 3})
+        for (const bool is_reversed : {false, true})
+          for (const bool has_own_vertices : {false, true}) {
+            PolygonSoup soup;
+            std::vector<int> polygon;
+            for (int i = 0; i < corners; ++i) {
+              const double angle = 2 * 3.14159265358979 * i / corners;
+              soup.positions.push_back(Vector3(std::cos(angle), std::sin(angle), i % 2 * bend));
+              polygon.push_back(i);
+            }
+            add_face(soup, polygon);
+            const double area = build_mesh(soup).mesh.total_area();
+            std::vector<int> copy = turned(polygon, by, is_reversed);
+            if (has_own_vertices) {
+              for (int i = 0; i < corners; ++i) soup.positions.push_back(Vector3(soup.positions[i]));
+              for (int& v : copy) v += corners;
+            }
+            add_face(soup, copy);
+            const BuiltMesh built = build_mesh(soup);
+            EXPECT_EQ(topology_of(built.mesh), (Topology{1, 1, 1})) << corners << " " << bend << " " << by;
+            EXPECT_TRUE(has_defect(built.defects, "duplicate_face"));
+            EXPECT_FALSE(has_defect(built.defects, "non_manifold_edge"));
+            if (bend == 0 || (!is_reversed && by == 0)) {
+              EXPECT_NEAR(built.mesh.total_area(), area, 1e-12);
+            }
+          }
+}
+
+TEST(PolygonCuts, TheSameCornersInAnotherCycleAreNoCopy) {
+  PolygonSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  add_face(soup, {0, 1, 2, 3});
+  add_face(soup, {0, 2, 1, 3});
+  add_face(soup, {1, 0, 3, 2});
+  PolygonCuts cuts(soup.positions, soup);
+  cuts.keep(0, {0, 1, 2, 3}, {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_TRUE(cuts.like_a_copy(1, {0, 2, 1, 3}).empty());
+  EXPECT_EQ(cuts.like_a_copy(2, {1, 0, 3, 2}), (std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 3, 2}}));
 }
 
 TEST(MeshBuilder, SplitsNonManifoldEdgesAndVertices) {

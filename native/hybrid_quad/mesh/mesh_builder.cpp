@@ -16,6 +16,7 @@
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/mesh_oddities.h"
 #include "hybrid_quad/mesh/negligible_faces.h"
+#include "hybrid_quad/mesh/polygon_cuts.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
 #include "hybrid_quad/mesh/soup_order.h"
 #include "hybrid_quad/mesh/t_junctions.h"
@@ -195,6 +196,7 @@ void MeshBuilder::make_triangles() {
   for (const int size : given_.face_sizes) given_begin.push_back(given_begin.back() + size);
   Vector3 middle = Vector3::Zero();
   for (const Vector3& p : positions_) middle += p / static_cast<double>(positions_.size());
+  PolygonCuts cuts(positions_, ordered_.soup);
   for (int f = 0; f < face_count(); ++f) {
     const auto begin = ordered_.soup.face_vertices.begin();
     corners.assign(begin + ordered_.first_corner[f], begin + ordered_.first_corner[f + 1]);
@@ -204,11 +206,16 @@ void MeshBuilder::make_triangles() {
     if (size < 3) few.push_back(f);
     else if (corners.size() < size) repeated.push_back(f);
     if (corners.size() < 3) continue;
-    if (corners.size() > 3) begin_far_from(middle, positions_, corners);
     bool is_flat = true;
-    const int given_first = given_.face_vertices[given_begin[ordered_.given_face[f]]];
-    const auto fan_corner = std::find_if(corners.begin(), corners.end(), [&](int v) { return ordered_.given_vertex[v] == given_first; });
-    for (const auto& t : triangulate_polygon(positions_, corners, static_cast<int>(fan_corner - corners.begin()))) {
+    std::vector<std::array<int, 3>> cut = cuts.like_a_copy(f, corners);
+    if (cut.empty()) {
+      if (corners.size() > 3) begin_far_from(middle, positions_, corners);
+      const int given_first = given_.face_vertices[given_begin[ordered_.given_face[f]]];
+      const auto fan_corner = std::find_if(corners.begin(), corners.end(), [&](int v) { return ordered_.given_vertex[v] == given_first; });
+      cut = triangulate_polygon(positions_, corners, static_cast<int>(fan_corner - corners.begin()));
+      cuts.keep(f, corners, cut);
+    }
+    for (const auto& t : cut) {
       if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
       is_flat = is_flat && has_no_area(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
       triangles_.push_back(t);
