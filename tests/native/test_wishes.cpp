@@ -270,6 +270,20 @@ TEST(Guides, OutputEdgesFollowThem) {
   EXPECT_LE(median(errors), 5);
 }
 
+TEST(Wishes, OfVerticesThatNoFaceUsesMakeNoDifference) {
+  PolygonSoup soup = test::soup_of(test::icosphere(1));
+  soup.positions.push_back(Vector3(9, 9, 9));
+  RemeshOptions options;
+  options.quads = 100;
+  options.density.assign(soup.positions.size(), 1);
+  options.density.back() = NAN;
+  options.vertex_guides.assign(soup.positions.size(), Vector3::Zero());
+  options.vertex_guides.back().x() = NAN;
+  options.vertex_frames.assign(soup.positions.size(), {Vector3::Zero(), Vector3::Zero()});
+  options.vertex_frames.back()[0].x() = NAN;
+  EXPECT_GT(remesh(soup, options, RunContext{}).mesh.quads.size(), 0u);
+}
+
 TEST(Wishes, ThatMakeNoSenseAreRefusedByName) {
   const TriangleMesh mesh = test::icosphere(1);
   const auto code_of = [&](const RemeshOptions& options) {

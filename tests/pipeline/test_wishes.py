@@ -117,6 +117,20 @@ def test_what_is_not_finite_is_refused_by_name_and_place(name):
         hybrid_quad.remesh(vertices, faces, quads=100, **{name: values})
     assert caught.value.code == f"non_finite_{name}"
     assert list(caught.value.elements) == [6]
+    assert f"The {name} {'is' if name == 'density' else 'are'} not finite at vertex 6." in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["guides", "density", "frames"])
+def test_what_a_vertex_without_faces_is_asked_makes_no_difference(name):
+    vertices, faces = surfaces.sphere(4)
+    loose = [*vertices, (9.0, 9.0, 9.0)]
+    values = {"guides": np.zeros((len(loose), 3)), "density": np.ones(len(loose)), "frames": np.zeros((len(loose), 2, 3))}[
+        name
+    ]
+    plain = hybrid_quad.remesh(loose, faces, quads=100, **{name: values})
+    values[-1] = np.nan
+    asked = hybrid_quad.remesh(loose, faces, quads=100, **{name: values})
+    assert np.array_equal(asked.vertices, plain.vertices)
 
 
 @pytest.mark.parametrize("name", ["guides", "density", "frames"])

@@ -329,7 +329,7 @@ def native_arguments(
     require_edges(marked, polygons, len(points))
     lines = checked_strokes(strokes)
     guides = _with_directions(points, polygons, options, guides, lines, stroke_radius)
-    wishes = native_wishes(guides, density, frames, len(points), len(polygons.sizes))
+    wishes = native_wishes(guides, density, frames, len(points), polygons)
     _require_enough_length(points, polygons, options, wishes["density"])
     center = _symmetry_center(points, options)
     asked = {

@@ -27,24 +27,33 @@ double stretch_ratio(const Frame& frame) {
   return (sum + std::sqrt(std::max(0.0, sum * sum - 4 * area * area))) / (2 * area);
 }
 
-/// One value for each element of a kind, all finite.
+/// #V: whether a polygon uses the vertex; what others are asked makes no difference.
+std::vector<char> used_vertices(const PolygonSoup& soup) {
+  std::vector<char> is_used(soup.positions.size(), 0);
+  for (const int v : soup.face_vertices)
+    if (v >= 0 && v < static_cast<int>(is_used.size())) is_used[v] = 1;
+  return is_used;
+}
+
+/// One value for each element of a kind, all finite. \param counts  of each element: whether its value makes a difference
 template <class Value>
-void check_values(const std::vector<Value>& values, std::size_t count, const std::string& what, const std::string& kind) {
+void check_values(const std::vector<Value>& values, const std::vector<char>& counts, const std::string& what, const std::string& kind) {
+  const std::size_t count = counts.size();
   if (values.empty()) return;
   if (values.size() != count)
     throw InputError("wrong_count", std::to_string(values.size()) + " values of " + what + " for " + std::to_string(count) +
                                         " elements (" + kind + ").");
   std::vector<int> bad;
   for (std::size_t i = 0; i < count; ++i)
-    if (!is_finite(values[i])) bad.push_back(static_cast<int>(i));
+    if (counts[i] && !is_finite(values[i])) bad.push_back(static_cast<int>(i));
   if (!bad.empty())
     throw InputError("non_finite_" + what, "The " + what + " is not finite at " + kind + " " + std::to_string(bad.front()) + ".", kind, bad);
 }
 
-void check_frames(const std::vector<Frame>& frames, const std::string& kind) {
+void check_frames(const std::vector<Frame>& frames, const std::vector<char>& counts, const std::string& kind) {
   std::vector<int> bad;
   for (std::size_t i = 0; i < frames.size(); ++i)
-    if (!is_free(frames[i]) && !(stretch_ratio(frames[i]) <= kMostFrameStretch)) bad.push_back(static_cast<int>(i));
+    if (counts[i] && !is_free(frames[i]) && !(stretch_ratio(frames[i]) <= kMostFrameStretch)) bad.push_back(static_cast<int>(i));
   if (!bad.empty())
     throw InputError("degenerate_frame", "The two vectors of the frame at " + kind + " " + std::to_string(bad.front()) +
                                              " are (nearly) parallel, or one is far longer.", kind, bad);
@@ -125,14 +134,14 @@ std::vector<double> density_of(const TriangleMesh& component, const std::vector<
 }  // namespace
 
 void check_wishes(const PolygonSoup& soup, const RemeshOptions& options) {
-  const std::size_t vertices = soup.positions.size(), faces = soup.face_sizes.size();
+  const std::vector<char> vertices = used_vertices(soup), faces(soup.face_sizes.size(), 1);
   check_values(options.vertex_guides, vertices, "guide", "vertex");
   check_values(options.face_guides, faces, "guide", "face");
   check_values(options.density, vertices, "density", "vertex");
   check_values(options.vertex_frames, vertices, "frame", "vertex");
   check_values(options.face_frames, faces, "frame", "face");
-  check_frames(options.vertex_frames, "vertex");
-  check_frames(options.face_frames, "face");
+  check_frames(options.vertex_frames, vertices, "vertex");
+  check_frames(options.face_frames, faces, "face");
   std::vector<int> bad;
   for (std::size_t i = 0; i < options.strokes.size(); ++i)
     for (const Vector3& p : options.strokes[i].points)
