@@ -570,5 +570,43 @@ TEST(MeshBuilder, CheckLooksAtTheFacesBesideThoseThatItRefuses) {
   EXPECT_EQ(refusal(soup), "index_out_of_range");
 }
 
+TEST(MeshBuilder, CheckLooksBesideASurfaceWithOneSide) {
+  constexpr int kAround = 12;
+  PolygonSoup soup = test::soup_of(test::icosphere(1));
+  const int body_faces = static_cast<int>(soup.face_sizes.size()), a = soup.face_vertices[0], b = soup.face_vertices[1];
+  const int tip = static_cast<int>(soup.positions.size());
+  soup.positions.push_back(3 * (soup.positions[a] + soup.positions[b]));
+  add_face(soup, {a, b, tip});
+  const int strip = static_cast<int>(soup.positions.size());
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kAround;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 3 + side * std::cos(angle / 2);
+      soup.positions.push_back(Vector3(20 + r * std::cos(angle), r * std::sin(angle), side * std::sin(angle / 2)));
+    }
+  }
+  for (int i = 0; i < kAround; ++i) {
+    const bool is_last = i + 1 == kAround;
+    const int p = strip + 2 * i, q = is_last ? strip : p + 2;
+    add_face(soup, {p, is_last ? q + 1 : q, is_last ? q : q + 1, p + 1});
+  }
+  const std::vector<Defect> defects = check_mesh(soup);
+  const auto found = std::find_if(defects.begin(), defects.end(), [](const Defect& d) { return d.code == "non_manifold_edge"; });
+  ASSERT_NE(found, defects.end());
+  EXPECT_EQ(found->elements, (std::vector<int>{std::min(a, b), std::max(a, b)}));
+  EXPECT_TRUE(has_defect(defects, "non_manifold_vertex")) << "found once the strip is left out";
+  EXPECT_EQ(std::count_if(defects.begin(), defects.end(), [](const Defect& d) { return d.code == "non_manifold_edge"; }), 1);
+  EXPECT_EQ(defects.back().code, "non_orientable");
+  EXPECT_EQ(defects.back().elements.size(), static_cast<std::size_t>(kAround));
+  EXPECT_EQ(defects.back().elements.front(), body_faces + 1);
+}
+
+TEST(MeshBuilder, ASpikeIsRefusedByItsVertex) {
+  PolygonSoup soup = test::soup_of(test::icosphere(2));
+  soup.positions[5] = Vector3(1e6, 0, 0);
+  EXPECT_EQ(refusal(soup), "coordinate_outlier");
+  EXPECT_EQ(check_mesh(soup).back().elements, std::vector<int>{5});
+}
+
 }  // namespace
 }  // namespace hybrid_quad

@@ -135,6 +135,19 @@ TEST(MeshOddities, ACornerFarFromAllOthersIsNamed) {
   EXPECT_EQ(far->elements, std::vector<int>{7});
 }
 
+TEST(MeshOddities, ACornerFarFromAllOthersIsNamedWhereItsFaceHasNoArea) {
+  PolygonSoup soup = test::soup_of(test::icosphere(2));
+  const int far = static_cast<int>(soup.positions.size());
+  soup.positions.push_back(Vector3(1e7, 0, 0));
+  soup.face_sizes.push_back(3);
+  soup.face_vertices.insert(soup.face_vertices.end(), {0, far, far});
+  soup.face_sizes.push_back(3);
+  soup.face_vertices.insert(soup.face_vertices.end(), {0, 0, far});
+  bool is_named = false;
+  for (const Defect& d : check_mesh(soup)) is_named |= d.code == "far_vertex" && d.elements == std::vector<int>{far};
+  EXPECT_TRUE(is_named);
+}
+
 TEST(UnitFrame, PutsEverythingBetweenMinusOneAndOneAndBack) {
   const TriangleMesh torus = test::torus(8, 6);
   for (const double scale : {1e-300, 1e-30, 0.7, 1.0, 1e6, 1e300})

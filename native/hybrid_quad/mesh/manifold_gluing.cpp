@@ -63,7 +63,10 @@ class Gluer {
   ManifoldGluing run() {
     collect_sides();
     glue_simple_edges();
-    if (!out_.non_orientable_faces.empty()) return std::move(out_);
+    if (!out_.non_orientable_faces.empty()) {
+      for (const auto& range : crowded_) out_.non_manifold_edges.push_back({sides_[range[0]].low, sides_[range[0]].high});
+      return std::move(out_);
+    }
     glue_crowded_edges();
     orient();
     split_vertices();

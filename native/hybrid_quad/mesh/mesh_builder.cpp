@@ -336,6 +336,7 @@ void MeshBuilder::drop_copies(const std::vector<char>& is_copy) {
 void MeshBuilder::drop_copied_parts() { drop_copies(copied_parts(positions_, triangles_)); }
 
 BuiltMesh MeshBuilder::glue() {
+  constexpr const char* kCut = "the surface is cut there";
   ManifoldGluing glued = glue_triangles(positions_, triangles_);
   const auto polygons_of = [this](const std::vector<int>& faces) {
     std::vector<int> list;
@@ -343,18 +344,20 @@ BuiltMesh MeshBuilder::glue() {
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
   };
-  if (!glued.non_orientable_faces.empty())
+  std::vector<int> flipped, edge_ends;
+  for (const auto& e : glued.non_manifold_edges) edge_ends.insert(edge_ends.end(), e.begin(), e.end());
+  if (!glued.non_orientable_faces.empty()) {
+    note("non_manifold_edge", "edge", std::move(edge_ends), kCut);
     refuse("non_orientable", "The surface has one side only (like a Moebius strip): it cannot be oriented.", "face",
            polygons_of(glued.non_orientable_faces));
-  std::vector<int> flipped, edge_ends;
+  }
   for (int f = 0; f < static_cast<int>(glued.was_flipped.size()); ++f)
     if (glued.was_flipped[f]) flipped.push_back(f);
-  for (const auto& e : glued.non_manifold_edges) edge_ends.insert(edge_ends.end(), e.begin(), e.end());
   const double faces = static_cast<double>(triangles_.size());
   if (glued.non_manifold_edges.size() > kMostCrowded * faces && glued.torn_sides > kMostTorn * faces)
     refuse("not_a_surface", "Most edges are in more than two faces, as inside a volume: this is no surface.", "edge", std::move(edge_ends));
   note("flipped_face", "face", polygons_of(flipped), "turned around");
-  note("non_manifold_edge", "edge", std::move(edge_ends), "the surface is cut there");
+  note("non_manifold_edge", "edge", std::move(edge_ends), kCut);
   note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
 
   BuiltMesh built;
@@ -401,6 +404,12 @@ void MeshBuilder::drop_negligible_components(BuiltMesh& built) {
   const auto counting = std::count(weight.begin(), weight.end(), Weight::kCounts);
   if (counting == built.mesh.face_count()) return;
   std::vector<int> thin = polygons_of(Weight::kThin);
+  if (counting == 0 && !thin.empty()) {
+    // A spike makes any part as thin as a hair; of a hair no vertex lies far from all others.
+    std::vector<int> far = far_vertices(built);
+    if (!far.empty())
+      refuse("coordinate_outlier", "Vertices lie so far from all others that the mesh is as thin as a hair.", "vertex", std::move(far));
+  }
   if (counting == 0 && !thin.empty())
     refuse("thin_component", "The mesh is as thin as a hair: hundreds of thousands of times as long as wide.", "face", std::move(thin));
   if (counting == 0) refuse("no_area", "No face of the mesh has an area.", "", {});

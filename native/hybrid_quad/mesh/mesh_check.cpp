@@ -15,7 +15,7 @@ namespace {
 /// \returns whether any were taken away and any are left
 bool leave_out(const Defect& refusal, PolygonSoup& soup, std::vector<int>& face) {
   const bool by_vertices = refusal.element_kind == "vertex";
-  if (!by_vertices && refusal.code != "index_out_of_range") return false;
+  if (!by_vertices && refusal.code != "index_out_of_range" && refusal.code != "non_orientable") return false;
   std::vector<char> is_bad(by_vertices ? soup.positions.size() : soup.face_sizes.size(), 0);
   for (const int i : refusal.elements) is_bad[i] = 1;
   std::vector<int> sizes, vertices, kept;
@@ -35,6 +35,25 @@ bool leave_out(const Defect& refusal, PolygonSoup& soup, std::vector<int>& face)
   return is_any_taken && !face.empty();
 }
 
+/// Adds the elements of a defect to those of its kind, if there is one: what was found before some faces were left out may be
+/// found again. \returns whether it is of a new kind
+bool is_new_kind(const Defect& defect, std::vector<Defect>& known) {
+  const auto same = std::find_if(known.begin(), known.end(), [&](const Defect& d) {
+    return d.code == defect.code && d.element_kind == defect.element_kind && d.remedy == defect.remedy;
+  });
+  if (same == known.end()) return true;
+  const std::size_t size = defect.element_kind == "edge" ? 2 : 1;
+  std::vector<std::vector<int>> elements;
+  for (const std::vector<int>* list : {&std::as_const(same->elements), &defect.elements})
+    for (std::size_t i = 0; i + size <= list->size(); i += size)
+      elements.emplace_back(list->begin() + static_cast<std::ptrdiff_t>(i), list->begin() + static_cast<std::ptrdiff_t>(i + size));
+  std::sort(elements.begin(), elements.end());
+  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  same->elements.clear();
+  for (const auto& e : elements) same->elements.insert(same->elements.end(), e.begin(), e.end());
+  return false;
+}
+
 }  // namespace
 
 std::vector<Defect> check_mesh(const PolygonSoup& soup) {
@@ -47,7 +66,7 @@ std::vector<Defect> check_mesh(const PolygonSoup& soup) {
     bool is_refused = false;
     try {
       const BuiltMesh built = build_mesh(rest, noted);
-      for (Defect& oddity : oddities_of(built)) noted.push_back(std::move(oddity));
+      for (Defect& oddity : oddities_of(built, rest)) noted.push_back(std::move(oddity));
     } catch (const InputError&) {
       is_refused = true;  // the last defect says why
     }
@@ -58,7 +77,7 @@ std::vector<Defect> check_mesh(const PolygonSoup& soup) {
       if (!is_whole && (defect.code == "isolated_vertex" || defect.elements.empty())) continue;
       if (defect.element_kind == "face")
         for (int& f : defect.elements) f = face[f];
-      here.push_back(std::move(defect));
+      if (is_whole || is_new_kind(defect, found)) here.push_back(std::move(defect));
     }
     found.insert(found.begin(), here.begin(), here.end());  // so that what a run is refused for comes last
     if (!is_refused || !leave_out(last, rest, face)) return found;

@@ -52,6 +52,18 @@ std::vector<int> touching_vertices(const BuiltMesh& built) {
   return touching;
 }
 
+/// The far ones of vertices that faces used, but that are not in the built mesh.
+void add_far_of_lost_faces(const BuiltMesh& built, const PolygonSoup& soup, std::vector<int>& far) {
+  const VertexSpread spread = spread_of(built.mesh.positions());
+  std::vector<char> is_lost(soup.positions.size(), 0);
+  for (const int v : soup.face_vertices) is_lost[v] = 1;
+  for (const int v : built.input_vertex) is_lost[v] = 0;
+  for (std::size_t v = 0; v < is_lost.size(); ++v)
+    if (is_lost[v] && spread.ratio(soup.positions[v]) > kFar) far.push_back(static_cast<int>(v));
+}
+
+}  // namespace
+
 std::vector<int> far_vertices(const BuiltMesh& built) {
   const VertexSpread spread = spread_of(built.mesh.positions());
   std::vector<int> far;
@@ -60,17 +72,19 @@ std::vector<int> far_vertices(const BuiltMesh& built) {
   return far;
 }
 
-}  // namespace
-
 void note_touching_vertices(const BuiltMesh& built, std::vector<Defect>& defects) {
   note(defects, "touching_vertex", "vertex", touching_vertices(built), "stays: sheets that only touch are not joined");
 }
 
-std::vector<Defect> oddities_of(const BuiltMesh& built) {
+std::vector<Defect> oddities_of(const BuiltMesh& built, const PolygonSoup& soup) {
   std::vector<Defect> defects;
   note_intersections(built, defects);
   note_touching_vertices(built, defects);
-  note(defects, "far_vertex", "vertex", far_vertices(built), "stays, far from all others");
+  std::vector<int> far = far_vertices(built);
+  const std::size_t staying = far.size();
+  add_far_of_lost_faces(built, soup, far);
+  note(defects, "far_vertex", "vertex", far,
+       far.size() == staying ? "stays, far from all others" : "far from all others; stays where it has faces with an area");
   return defects;
 }
 
