@@ -148,6 +148,36 @@ TEST(MeshOddities, ACornerFarFromAllOthersIsNamedWhereItsFaceHasNoArea) {
   EXPECT_TRUE(is_named);
 }
 
+TEST(MeshOddities, CornersThatTouchFacesAndEdgesAreNamed) {
+  for (const double scale : {1.0, 1e-20})
+    for (const bool is_on_edge : {false, true}) {
+      PolygonSoup soup;
+      soup.positions = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+      const Vector3 place = is_on_edge ? Vector3(2, 0, 0) : Vector3(2, 1, 0);
+      for (const Vector3& p : {Vector3(0, 0, 0), Vector3(1, 0, 2), Vector3(0, 1, 2), Vector3(-1, -1, 2)}) soup.positions.push_back(place + p);
+      for (Vector3& p : soup.positions) p *= scale;
+      soup.face_sizes = {3, 3, 3, 3, 3, 3};
+      soup.face_vertices = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 4, 5, 7, 5, 6, 7};
+      std::vector<int> touching;
+      for (const Defect& d : check_mesh(soup)) {
+        EXPECT_NE(d.code, "self_intersection");
+        if (d.code == "touching_vertex") touching = d.elements;
+      }
+      EXPECT_EQ(touching, std::vector<int>{4});
+    }
+}
+
+TEST(MeshOddities, CutsAndFlatCornersTouchNothing) {
+  for (const TriangleMesh& mesh : {test::box(3), test::torus(12, 8), test::capped_cylinder(40, 4)})
+    for (const Defect& d : check_mesh(test::soup_of(mesh))) ADD_FAILURE() << d.code;
+  PolygonSoup fin = test::soup_of(test::box(2));
+  const int a = fin.face_vertices[0], b = fin.face_vertices[1];
+  fin.positions.push_back(Vector3(3, 4, 5));
+  fin.face_sizes.push_back(3);
+  fin.face_vertices.insert(fin.face_vertices.end(), {a, b, static_cast<int>(fin.positions.size()) - 1});
+  for (const Defect& d : check_mesh(fin)) EXPECT_NE(d.code, "touching_vertex");
+}
+
 TEST(UnitFrame, PutsEverythingBetweenMinusOneAndOneAndBack) {
   const TriangleMesh torus = test::torus(8, 6);
   for (const double scale : {1e-300, 1e-30, 0.7, 1.0, 1e6, 1e300})

@@ -22,7 +22,7 @@ struct ManifoldGluing {
 };
 
 /// Glues triangles along their common edges. Where more than two faces meet, the flattest pairs stay together and the
-/// others part; a vertex with several fans becomes several vertices. Each component is oriented as most of its faces
+/// others part, or all where more than 64 do; a vertex with several fans becomes several vertices. Each component is oriented as most of its faces
 /// are; one that was inconsistent and is closed is oriented outwards.
 ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);
 

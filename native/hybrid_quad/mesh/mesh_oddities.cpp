@@ -7,11 +7,13 @@
 #include "hybrid_quad/mesh/self_intersection.h"
 #include "hybrid_quad/mesh/unit_frame.h"
 #include "hybrid_quad/mesh/vertex_spread.h"
+#include "hybrid_quad/mesh/vertices_on_faces.h"
 
 namespace hybrid_quad {
 
 namespace {
 
+constexpr const char* kTouching = "stays: sheets that only touch are not joined";
 constexpr double kFar = 20;  ///< times farther from the middle than nine tenths of all vertices
 
 void note(std::vector<Defect>& defects, const char* code, const char* kind, std::vector<int> elements, const char* remedy) {
@@ -21,12 +23,16 @@ void note(std::vector<Defect>& defects, const char* code, const char* kind, std:
   defects.push_back({code, kind, std::move(elements), true, true, remedy});
 }
 
-void note_intersections(const BuiltMesh& built, std::vector<Defect>& defects) {
+/// The index of the built mesh, moved to where it is of size 1.
+SurfaceIndex index_in_unit_frame(const BuiltMesh& built) {
   const UnitFrame frame = unit_frame_of(built.mesh.positions(), false);
   std::vector<Vector3> positions = built.mesh.positions();
   for (Vector3& p : positions) p = frame.inward(p);
-  const TriangleMesh mesh(std::move(positions), built.mesh.faces(), built.mesh.opposites());
-  const SelfIntersections found = self_intersecting_faces(SurfaceIndex(mesh, {}));
+  return SurfaceIndex(TriangleMesh(std::move(positions), built.mesh.faces(), built.mesh.opposites()), {});
+}
+
+void note_intersections(const BuiltMesh& built, const SurfaceIndex& index, std::vector<Defect>& defects) {
+  const SelfIntersections found = self_intersecting_faces(index);
   std::vector<int> polygons;
   for (const int f : found.faces) polygons.push_back(built.input_face[f]);
   note(defects, "self_intersection", "face", std::move(polygons), "stays: the quads intersect there as well");
@@ -73,13 +79,16 @@ std::vector<int> far_vertices(const BuiltMesh& built) {
 }
 
 void note_touching_vertices(const BuiltMesh& built, std::vector<Defect>& defects) {
-  note(defects, "touching_vertex", "vertex", touching_vertices(built), "stays: sheets that only touch are not joined");
+  note(defects, "touching_vertex", "vertex", touching_vertices(built), kTouching);
 }
 
 std::vector<Defect> oddities_of(const BuiltMesh& built, const PolygonSoup& soup) {
   std::vector<Defect> defects;
-  note_intersections(built, defects);
-  note_touching_vertices(built, defects);
+  const SurfaceIndex index = index_in_unit_frame(built);
+  note_intersections(built, index, defects);
+  std::vector<int> touching = touching_vertices(built);
+  for (const int v : vertices_on_faces(index, built.input_vertex)) touching.push_back(built.input_vertex[v]);
+  note(defects, "touching_vertex", "vertex", std::move(touching), kTouching);
   std::vector<int> far = far_vertices(built);
   const std::size_t staying = far.size();
   add_far_of_lost_faces(built, soup, far);
