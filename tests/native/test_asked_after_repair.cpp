@@ -126,5 +126,23 @@ TEST(AskedAfterRepair, ValuesOfMergedVerticesAreKept) {
   EXPECT_EQ(left.vertex_frames[1][1], Vector3(0, 2, 0));
 }
 
+TEST(AskedAfterRepair, ValuesOfCopiesOfPolygonsAreKept) {
+  PolygonSoup soup = two_squares();
+  soup.face_sizes.push_back(4);
+  soup.face_vertices.insert(soup.face_vertices.end(), {2, 1, 0, 3});
+  const BuiltMesh built = build_mesh(soup);
+  const auto is_built = [&](int f) { return std::find(built.input_face.begin(), built.input_face.end(), f) != built.input_face.end(); };
+  ASSERT_NE(is_built(0), is_built(2));
+  const int kept = is_built(0) ? 0 : 2;
+  RemeshOptions options;
+  options.face_guides.assign(3, Vector3::Zero());
+  options.face_guides[2 - kept] = Vector3(0, 1, 0);
+  options.face_frames.assign(3, {Vector3::Zero(), Vector3::Zero()});
+  options.face_frames[2 - kept] = {Vector3(1, 0, 0), Vector3(0, 2, 0)};
+  const RemeshOptions left = after_repair(soup, options).options;
+  EXPECT_EQ(left.face_guides[kept], Vector3(0, 1, 0));
+  EXPECT_EQ(left.face_frames[kept][1], Vector3(0, 2, 0));
+}
+
 }  // namespace
 }  // namespace hybrid_quad

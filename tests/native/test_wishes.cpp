@@ -299,6 +299,10 @@ TEST(Wishes, ThatMakeNoSenseAreRefusedByName) {
   options.density.assign(mesh.vertex_count(), 1);
   options.density[7] = NAN;
   EXPECT_EQ(code_of(options), "non_finite_density 7");
+  options.density.clear();
+  options.marked_edges = {{0, mesh.vertex_count()}};
+  EXPECT_EQ(code_of(options), "index_out_of_range " + std::to_string(mesh.vertex_count()));
+  options.marked_edges.clear();
   options.density.resize(3);
   EXPECT_EQ(code_of(options), "wrong_count");
   options.density.clear();

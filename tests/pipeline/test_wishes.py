@@ -124,9 +124,8 @@ def test_what_is_not_finite_is_refused_by_name_and_place(name):
 def test_what_a_vertex_without_faces_is_asked_makes_no_difference(name):
     vertices, faces = surfaces.sphere(4)
     loose = [*vertices, (9.0, 9.0, 9.0)]
-    values = {"guides": np.zeros((len(loose), 3)), "density": np.ones(len(loose)), "frames": np.zeros((len(loose), 2, 3))}[
-        name
-    ]
+    shape = {"guides": (3,), "density": (), "frames": (2, 3)}[name]
+    values = np.full((len(loose), *shape), 1.0 if name == "density" else 0.0)
     plain = hybrid_quad.remesh(loose, faces, quads=100, **{name: values})
     values[-1] = np.nan
     asked = hybrid_quad.remesh(loose, faces, quads=100, **{name: values})

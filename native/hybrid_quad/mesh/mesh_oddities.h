@@ -11,7 +11,8 @@ namespace hybrid_quad {
 /// \param soup  what it was built from, for vertices whose faces went
 std::vector<Defect> oddities_of(const BuiltMesh& built, const PolygonSoup& soup);
 
-/// Of touching_vertex of these those at one place with another alone: who welds by place, which files of triangles do, gets another surface than the built one.
+/// Of these the touching_vertex at one place with another vertex alone: who welds by place, which files of triangles do, gets
+/// another surface than the built one.
 void note_touching_vertices(const BuiltMesh& built, std::vector<Defect>& defects);
 
 /// The far_vertex of these: vertices of the input that lie more than twenty times as far out as nine tenths of the others.

@@ -147,15 +147,58 @@ void take_strongest(const std::vector<int>& welded_into, std::vector<double>& de
   }
 }
 
+/// Polygons that were left out as copies, each with one at the same places that is in the built mesh.
+std::vector<std::array<int, 2>> copied_polygons(const PolygonSoup& soup, const BuiltMesh& built) {
+  const auto copies = std::find_if(built.defects.begin(), built.defects.end(), [](const Defect& d) { return d.code == "duplicate_face"; });
+  if (copies == built.defects.end()) return {};
+  std::vector<std::size_t> begin{0};
+  for (const int size : soup.face_sizes) begin.push_back(begin.back() + size);
+  using Places = std::vector<std::array<double, 3>>;
+  const auto places_of = [&](int f) {
+    Places places;
+    for (std::size_t c = begin[f]; c < begin[f + 1]; ++c) {
+      const Vector3& p = soup.positions[soup.face_vertices[c]];
+      places.push_back({p.x(), p.y(), p.z()});
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+  };
+  std::vector<char> is_built(soup.face_sizes.size(), 0);
+  for (const int f : built.input_face) is_built[f] = 1;
+  std::map<Places, int> built_at;
+  for (int f = 0; f < static_cast<int>(is_built.size()); ++f)
+    if (is_built[f]) built_at.emplace(places_of(f), f);
+  std::vector<std::array<int, 2>> pairs;
+  for (const int f : copies->elements) {
+    if (is_built[f]) continue;
+    const auto found = built_at.find(places_of(f));
+    if (found != built_at.end()) pairs.push_back({f, found->second});
+  }
+  return pairs;
+}
+
+template <class Value, class IsFree>
+void take_copied(const std::vector<std::array<int, 2>>& copies, const IsFree& is_free, std::vector<Value>& values) {
+  for (const auto& [copy, kept] : copies)
+    if (is_free(values[kept])) values[kept] = values[copy];
+}
+
 }  // namespace
 
 RemeshOptions asked_after_repair(const PolygonSoup& soup, const BuiltMesh& built, const RemeshOptions& asked,
                                  std::vector<std::string>& warnings) {
   RemeshOptions out = asked;
   const std::vector<int>& target = built.welded_into;
-  take_merged(target, [](const Vector3& guide) { return guide.isZero(0); }, out.vertex_guides);
-  take_merged(target, [](const std::array<Vector3, 2>& frame) { return frame[0].isZero(0) && frame[1].isZero(0); }, out.vertex_frames);
+  const auto is_free_guide = [](const Vector3& guide) { return guide.isZero(0); };
+  const auto is_free_frame = [](const std::array<Vector3, 2>& frame) { return frame[0].isZero(0) && frame[1].isZero(0); };
+  take_merged(target, is_free_guide, out.vertex_guides);
+  take_merged(target, is_free_frame, out.vertex_frames);
   take_strongest(target, out.density);
+  if (!asked.face_guides.empty() || !asked.face_frames.empty()) {
+    const std::vector<std::array<int, 2>> copies = copied_polygons(soup, built);
+    if (!asked.face_guides.empty()) take_copied(copies, is_free_guide, out.face_guides);
+    if (!asked.face_frames.empty()) take_copied(copies, is_free_frame, out.face_frames);
+  }
 
   std::vector<Edge> all;
   for (Edge& e : out.marked_edges) {

@@ -143,6 +143,11 @@ void check_wishes(const PolygonSoup& soup, const RemeshOptions& options) {
   check_frames(options.vertex_frames, vertices, "vertex");
   check_frames(options.face_frames, faces, "face");
   std::vector<int> bad;
+  for (const auto& edge : options.marked_edges)
+    for (const int v : edge)
+      if (v < 0 || v >= static_cast<int>(vertices.size())) bad.push_back(v);
+  if (!bad.empty())
+    throw InputError("index_out_of_range", "A marked edge has an unknown vertex " + std::to_string(bad.front()) + ".", "vertex", bad);
   for (std::size_t i = 0; i < options.strokes.size(); ++i)
     for (const Vector3& p : options.strokes[i].points)
       if (!is_finite(p) && (bad.empty() || bad.back() != static_cast<int>(i))) bad.push_back(static_cast<int>(i));

@@ -23,7 +23,8 @@ struct Wishes {
 };
 
 /// Refuses what cannot be asked, before anything is computed.
-/// \throws InputError wrong_count, non_finite_guide, non_finite_density, non_finite_frame, degenerate_frame, non_finite_stroke; names the elements
+/// \throws InputError wrong_count, non_finite_guide, non_finite_density, non_finite_frame, degenerate_frame, index_out_of_range,
+/// non_finite_stroke; names the elements
 void check_wishes(const PolygonSoup& soup, const RemeshOptions& options);
 
 /// The caller's arrays but directions, which are by input vertex or input polygon, on a component of the built mesh.
