@@ -56,23 +56,33 @@ void bind(Workpiece& piece, const RunContext& context) {
   for (CurveGeometry& curve : piece.curves) curve.weigh_by_curvature(piece.h, kCurvatureWeight);
 }
 
-/// One round of everything; quads in `locked` stay as they are.
-ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, const TriangleMesh& input,
-                           const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
-                           const ImproveOptions& options, const RunContext& context) {
+/// Quads that one round has improved.
+struct Improved {
+  QuadMesh quads;
   ImproveReport report;
+  bool are_held = false;  ///< by tips
+};
+
+/// One round of everything; quads in `locked` stay as they are.
+/// \param hold  whether tips hold their quads
+Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, bool hold, const TriangleMesh& input,
+                      const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
+                      const ImproveOptions& options, const RunContext& context) {
+  Improved improved{quads, {}, false};
+  ImproveReport& report = improved.report;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
   // Where many are inverted, and a round leaves more than such a part of them, another hardly helps; few are worth all rounds.
   constexpr int kManyInverted = 30;
   constexpr double kWorthwhile = 0.8;
   Workpiece piece = workpiece_of(quads, input, features, index, options);
-  if (!(piece.h > 0)) return report;
+  if (!(piece.h > 0)) return improved;
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
   bind(piece, context);
   TipPulls tips(piece);
+  improved.are_held = hold && !tips.empty();
   SmootherOptions smoothing = smoothing_of(options, context.threads);
-  smoothing.tips = &tips;
+  if (improved.are_held) smoothing.tips = &tips;
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
@@ -103,8 +113,8 @@ ImproveReport improve_once(QuadMesh& quads, const std::vector<char>& locked, con
     report.mended = mended.mended;
     report.placed = mended.placed;
   }
-  quads = piece.mesh.extract(piece.face);
-  return report;
+  improved.quads = piece.mesh.extract(piece.face);
+  return improved;
 }
 
 int flawed_in(const EditMesh& mesh, const FlawMeasure& measure) {
@@ -157,34 +167,41 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     return *restoration;
   };
   const std::vector<char> none(quads.quads.size(), 0);
-  QuadMesh best;
-  ImproveReport report;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    QuadMesh improved = quads;
-    const std::vector<char>& locked = restoration ? restoration->locked() : none;
-    ImproveReport now = improve_once(improved, locked, input, features, index, judged, options, context);
-    const std::vector<int> flawed = flawed_quads(improved, judged, options.agreement, context.threads);
-    now.flawed_after = static_cast<int>(flawed.size());
-    now.restored_quads = restoration ? restoration->locked_count() : 0;
-    const bool is_better = attempt == 0 || now.flawed_after < report.flawed_after;
-    const bool go_on = is_worth_another_attempt(now.flawed_after, improved.quads.size()) && is_better &&
-                       before().give_up_around(improved, flawed);
-    if (is_better) {
-      best = std::move(improved);
-      report = now;
-    }
-    if (!go_on) break;
+  const auto attempted = [&](bool hold, std::vector<int>& flawed) {
+    Improved now = improve_once(quads, restoration ? restoration->locked() : none, hold, input, features, index, judged, options, context);
+    flawed = flawed_quads(now.quads, judged, options.agreement, context.threads);
+    now.report.flawed_after = static_cast<int>(flawed.size());
+    now.report.restored_quads = restoration ? restoration->locked_count() : 0;
+    return now;
+  };
+  std::vector<int> flawed;
+  Improved now = attempted(true, flawed), best;
+  // Quads that tips hold may be in each other's way: all is tried without, and the better kept in the end.
+  std::optional<Improved> held;
+  if (now.are_held && !flawed.empty()) {
+    held = std::move(now);
+    now = attempted(false, flawed);
   }
+  for (int attempt = 0;;) {
+    const bool is_better = attempt == 0 || now.report.flawed_after < best.report.flawed_after;
+    const bool go_on = ++attempt < kAttempts && is_worth_another_attempt(now.report.flawed_after, now.quads.quads.size()) && is_better &&
+                       before().give_up_around(now.quads, flawed);
+    if (is_better) best = std::move(now);
+    if (!go_on) break;
+    now = attempted(false, flawed);
+  }
+  if (held && held->report.flawed_after < best.report.flawed_after) best = std::move(*held);
+  ImproveReport& report = best.report;
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;
-  const bool has_slipped = area_of(best) < kLeastArea * std::min(area_of(quads), input.total_area());
+  const bool has_slipped = area_of(best.quads) < kLeastArea * std::min(area_of(quads), input.total_area());
   if (has_slipped || (report.flawed_after > 0 && report.flawed_after > before().flawed_count())) {
     report.connectivity_moves = 0;
     report.flawed_after = before().flawed_count();
     report.restored_quads = static_cast<int>(quads.quads.size());
     return report;
   }
-  quads = std::move(best);
+  quads = std::move(best.quads);
   return report;
 }
 

@@ -15,6 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeastDefect = 2.5, kMostAgreement = 0.8;
 constexpr double kFarthest = 1.5;  ///< in edge lengths: tip from the middle of its quad
 constexpr double kWeight = 30;     ///< of a pull
+constexpr std::size_t kFewest = 24;  ///< quads: fewer are all tips
 
 /// 2 pi less the angles of the quads at an inner free vertex; 0 where curves hold the vertex.
 double angle_defect(const EditMesh& mesh, int v) {
@@ -98,7 +99,9 @@ TipPulls::TipPulls(const Workpiece& piece) {
   std::vector<double> defect(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) defect[v] = mesh.valence(v) > 0 ? angle_defect(mesh, v) : 0;
   std::map<int, int> quad_of;  // quads that cover a tip together have it once
-  for (const int q : live_quads(mesh)) {
+  const std::vector<int> quads = live_quads(mesh);
+  if (quads.size() < kFewest) return;
+  for (const int q : quads) {
     const int tip = tip_at(piece, defect, q);
     if (tip >= 0) quad_of.emplace(tip, q);
   }

@@ -12,7 +12,8 @@ namespace hybrid_quad {
 ///
 /// A tip is where a quad's corners bend by more than 2.5 (of 2 pi, angle defects summed) and the surface below them and the vertices around
 /// looks many ways (its normals add up to less than 0.8 of their number): there the surface is climbed, from the middle of the
-/// quad on and away from the vertices around it, to the vertex that is farthest, at most 1.5 edges away.
+/// quad on and away from the vertices around it, to the vertex that is farthest, at most 1.5 edges away. Parts of less than 24 quads, which
+/// would be all tips, have none.
 class TipPulls {
  public:
   /// Finds the tips from the quads as they are. \pre piece.bind_all
@@ -21,6 +22,7 @@ class TipPulls {
   /// Each tip pulls at the quad that is nearest to it now. To be called when vertices or quads have changed.
   void attach(const EditMesh& mesh);
 
+  bool empty() const { return tips_.empty(); }
   const PointPulls& pulls() const { return pulls_; }
   std::vector<Vector3> points() const;  ///< the tips
 

@@ -368,8 +368,9 @@ BuiltMesh MeshBuilder::glue() {
 }
 
 /// The same surface gives the same mesh, in whatever order its file has it, and however it lies in space.
-void put_in_order(BuiltMesh& built) {
+void put_in_order(BuiltMesh& built, const RunContext& context) {
   const CanonicalOrder order = canonical_order(built.mesh);
+  context.checkpoint();
   std::vector<int> input_vertex, input_face;
   for (const int v : order.vertex) input_vertex.push_back(built.input_vertex[v]);
   for (std::size_t h = 0; h < order.halfedge.size(); h += 3) input_face.push_back(built.input_face[order.halfedge[h] / 3]);
@@ -387,7 +388,7 @@ void resolve_faces(BuiltMesh& built) {
   built.input_vertex = std::move(resolved.vertex_source);
   built.input_face = std::move(resolved.face_source);
   built.mesh = std::move(resolved.mesh);
-  put_in_order(built);
+  put_in_order(built, context);
 }
 
 /// Drops components without area, and those so small that their quads would have none.
@@ -475,7 +476,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   BuiltMesh built = glue();
   context.checkpoint();
-  put_in_order(built);
+  put_in_order(built, context);
   context.checkpoint();
   resolve_faces(built);
   drop_negligible_components(built);
