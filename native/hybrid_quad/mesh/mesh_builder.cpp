@@ -380,7 +380,7 @@ void put_in_order(BuiltMesh& built, const RunContext& context) {
 }
 
 /// Flips and collapses faces without area away, one after the other.
-void resolve_faces(BuiltMesh& built) {
+void resolve_faces(BuiltMesh& built, const RunContext& context) {
   if (faces_without_area(built.mesh).empty()) return;
   ResolvedMesh resolved = resolve_faces_without_area(built.mesh);
   for (int& v : resolved.vertex_source) v = built.input_vertex[v];
@@ -478,7 +478,7 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   context.checkpoint();
   put_in_order(built, context);
   context.checkpoint();
-  resolve_faces(built);
+  resolve_faces(built, context);
   drop_negligible_components(built);
   tell_of_remaining_faces(built);
   put_back(built);
