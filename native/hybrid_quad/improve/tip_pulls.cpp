@@ -12,7 +12,7 @@ namespace hybrid_quad {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLeastDefect = 2.5, kMostAgreement = 0.8;
+constexpr double kLeastDefect = 2.5, kMostAgreement = 0.8, kFlat = 0.95;
 constexpr double kFarthest = 1.5;  ///< in edge lengths: tip from the middle of its quad
 constexpr double kWeight = 30;     ///< of a pull
 constexpr std::size_t kFewest = 24;  ///< quads: fewer are all tips
@@ -29,6 +29,19 @@ double angle_defect(const EditMesh& mesh, int v) {
     defect -= std::atan2(forth.cross(back).norm(), forth.dot(back));
   }
   return defect;
+}
+
+/// How far some quads look the same way: their vector areas' sum against the sum of areas.
+double agreement_of(const EditMesh& mesh, const std::vector<int>& quads) {
+  Vector3 sum = Vector3::Zero();
+  double size = 0;
+  for (const int q : quads) {
+    const EditMesh::Quad& v = mesh.quad(q);
+    const Vector3 area = (mesh.positions[v[2]] - mesh.positions[v[0]]).cross(mesh.positions[v[3]] - mesh.positions[v[1]]);
+    sum += area;
+    size += area.norm();
+  }
+  return size > 0 ? sum.norm() / size : 1;
 }
 
 /// How far the input looks the same way below some vertices: 1 where its normals are all alike. Those of the quads say little where these are
@@ -75,7 +88,7 @@ int tip_at(const Workpiece& piece, const std::vector<double>& defect, int q) {
   const auto add = [&](double sum, int v) { return sum + defect[v]; };
   if (std::accumulate(corners.begin(), corners.end(), 0.0, add) < kLeastDefect) return -1;
   std::vector<int> around = with_ring(mesh, corners);
-  if (agreement_below(piece, around) > kMostAgreement) return -1;
+  if (agreement_of(mesh, quads_at(mesh, corners)) > kMostAgreement || agreement_below(piece, around) > kFlat) return -1;
   const auto on_face = std::find_if(corners.begin(), corners.end(), [&](int v) { return piece.face[v] >= 0; });
   const auto is_corner = [&](int v) { return std::find(corners.begin(), corners.end(), v) != corners.end(); };
   around.erase(std::remove_if(around.begin(), around.end(), is_corner), around.end());
