@@ -16,6 +16,7 @@ import pytest
 import hybrid_quad
 from hybrid_quad.blender import command, command_arguments, edge_marks
 from hybrid_quad.blender.remesh_task import prepare_task
+from hybrid_quad.core.file_places import MeshFileError
 from scenes import add_cube, add_object, assert_sound
 
 BATCH = Path(hybrid_quad.__file__).parent / "batch.py"
@@ -235,6 +236,21 @@ def test_a_bug_is_status_3(tmp_path, monkeypatch):
     add_cube()
     assert command.main(["--object", "Cube", "--output", str(tmp_path / "out.blend")]) == 3
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_and_a_report_of_success_are_there_only_with_the_file(tmp_path, monkeypatch):
+    def full(path):
+        raise MeshFileError(f"{path}: no space left")
+
+    monkeypatch.setattr(command, "_save", full)
+    add_cube(quads=250)
+    picture, report = tmp_path / "p.png", tmp_path / "r.json"
+    picture.write_bytes(b"as it was")
+    arguments = ["--output", str(tmp_path / "out.blend"), "--picture", str(picture), "--report", str(report)]
+    assert command.main(["--object", "Cube", *arguments]) == 2
+    assert picture.read_bytes() == b"as it was"
+    assert json.loads(report.read_text())["status"] != "ok"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["p.png", "r.json"]
 
 
 def test_terminating_it_leaves_nothing_half_written(blend, tmp_path):

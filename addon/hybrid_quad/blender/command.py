@@ -18,7 +18,14 @@ from ..cli.main import main as package_main
 from ..cli.messages import describe_defect, describe_symmetry, what_became_of
 from ..core import picture, report
 from ..core.errors import Cancelled, InputError, InternalError
-from ..core.file_places import MeshFileError, UnwritableFileError, check_apart, check_place, replacing
+from ..core.file_places import (
+    FilesTogether,
+    MeshFileError,
+    UnwritableFileError,
+    check_apart,
+    check_place,
+    replacing,
+)
 from ..core.options import RemeshOptions
 from ..core.parent_process import end_with_stdin
 from . import case_command
@@ -88,13 +95,15 @@ def main(arguments: Sequence[str]) -> int:
             result = task.solve(progress=_printer(options.quiet))
             target = place_result(bpy.context, obj, task, result)
             record = {**result.report, "object": target.name, "source_object": obj.name}
-            if options.picture:
-                picture.write_picture(options.picture, result.vertices, result.quads)
-            _write_report(options.report, record)
-            if options.only_result:
-                _save_object(options.output, target)
-            else:
-                _save(options.output)
+            with FilesTogether() as files:
+                if options.picture:
+                    picture.write_picture(options.picture, result.vertices, result.quads, files)
+                _write_report(options.report, record, files)
+                # Last: the others take their places only if this is written.
+                if options.only_result:
+                    _save_object(options.output, target)
+                else:
+                    _save(options.output)
     except Exception as error:
         return _fail(options, asked, error)
     except KeyboardInterrupt:
@@ -197,9 +206,9 @@ def _save_object(path: str, obj: bpy.types.Object) -> None:
         raise MeshFileError(f"{path}: {error}") from error
 
 
-def _write_report(path: str | None, record: dict[str, Any]) -> None:
+def _write_report(path: str | None, record: dict[str, Any], together: FilesTogether | None = None) -> None:
     if path:
-        with replacing(path) as file:
+        with together.replacing(path) if together else replacing(path) as file:
             file.write(report.as_text(record).encode())
 
 
