@@ -89,6 +89,7 @@ py::dict dict_of_repairs(const RepairRecord& repairs) {
   result["ended_searches"] = repairs.ended_searches;
   result["opened_flat_quads"] = repairs.opened_flat_quads;
   result["split_triangles"] = repairs.split_triangles;
+  result["released_tips"] = repairs.released_tips;
   result["restored_quads"] = repairs.restored_quads;
   return result;
 }

@@ -190,6 +190,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     if (!go_on) break;
     now = attempted(false, flawed);
   }
+  if (held) best.report.released_tips = 1;
   if (held && held->report.flawed_after < best.report.flawed_after) best = std::move(*held);
   ImproveReport& report = best.report;
   // A few quads around something small may slip off it to one side, where they shrink to a point.

@@ -4,35 +4,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "hybrid_quad/base/disjoint_sets.h"
 #include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
-
-namespace {
-
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(int v, int w) {
-    v = find(v);
-    w = find(w);
-    parent_[std::max(v, w)] = std::min(v, w);
-  }
-  std::vector<int> roots() {
-    std::vector<int> r(parent_.size());
-    for (int v = 0; v < static_cast<int>(r.size()); ++v) r[v] = find(v);
-    return r;
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
 
 std::vector<int> places_of(const std::vector<Vector3>& positions) {
   struct Point {
@@ -76,7 +51,7 @@ std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const st
   struct OpenEdge {
     int low_place, high_place, low, high;
   };
-  VertexSets sets(positions.size());
+  DisjointSets sets(positions.size());
   if (!open.empty()) {
     const std::vector<int> place = places_of(positions);
     std::vector<OpenEdge> edges;
@@ -94,11 +69,11 @@ std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const st
         sets.join(edges[i].high, edges[i - 1].high);
       }
   }
-  return sets.roots();
+  return sets.sets();
 }
 
 std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance) {
-  VertexSets sets(positions.size());
+  DisjointSets sets(positions.size());
   std::vector<int> order(positions.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&positions](int v, int w) {
@@ -110,7 +85,7 @@ std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, d
       if (d.x() > tolerance) break;
       if (d.norm() <= tolerance) sets.join(order[i], order[j]);
     }
-  return sets.roots();
+  return sets.sets();
 }
 
 double open_edge_share(const std::vector<std::array<int, 3>>& faces) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "hybrid_quad/base/disjoint_sets.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
 
 namespace hybrid_quad {
@@ -36,25 +36,6 @@ std::vector<Side> sides_at(const std::vector<std::array<int, 3>>& triangles, con
   std::sort(sides.begin(), sides.end());
   return sides;
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int set_of(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// \return whether they were in two
-  bool join(int i, int j) {
-    i = set_of(i);
-    j = set_of(j);
-    parent_[i] = j;
-    return i != j;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Triangles without area that hang together, and the edges that they have in common with faces with area.
 struct FlatPatch {

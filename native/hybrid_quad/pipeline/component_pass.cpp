@@ -366,6 +366,7 @@ class ComponentRemesher {
     const ImproveReport report = clock_.measure("improve", [&] { return finishing().improve(extraction.mesh, context); });
     extraction.repairs.mended_places += report.mended;
     extraction.repairs.poor_places += report.placed;
+    extraction.repairs.released_tips += report.released_tips;
     extraction.repairs.restored_quads += report.restored_quads;
     extraction.flawed = report.flawed_after;
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));

@@ -257,6 +257,7 @@ RepairRecord& RepairRecord::operator+=(const RepairRecord& other) {
   ended_searches += other.ended_searches;
   opened_flat_quads += other.opened_flat_quads;
   split_triangles += other.split_triangles;
+  released_tips += other.released_tips;
   restored_quads += other.restored_quads;
   return *this;
 }
