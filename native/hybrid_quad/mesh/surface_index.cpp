@@ -132,6 +132,11 @@ struct alignas(64) Node {
   }
 };
 
+struct Range {
+  int begin = 0, end = 0;
+  int size() const { return end - begin; }
+};
+
 }  // namespace
 
 struct SurfaceIndex::Tree {
@@ -195,7 +200,7 @@ struct SurfaceIndex::Tree {
     return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
   void build(int threads);
-  void bound(std::vector<Node>& tree, const std::vector<Matrix3>& turns) const;
+  void bound(const Range& subtree);
   static void put_below(Node& node, int lane, const Node& below, const Matrix3* turn);
 };
 
@@ -207,11 +212,6 @@ struct Item {
   int face;
 };
 
-struct Range {
-  int begin = 0, end = 0;
-  int size() const { return end - begin; }
-};
-
 /// Faces that become a tree, and which way the needles among them lie.
 class TreeBuilder {
  public:
@@ -221,16 +221,30 @@ class TreeBuilder {
     std::array<Range, kWidth> range;
     int count = 0;
   };
-  /// Up to four parts of about the same size. \param turn  to the axes across which parts are halved
-  Parts quartered(const Range& range, const Matrix3& turn) {
+  /// Up to four parts of about the same size. \param halve  takes the second half off a range and returns it
+  template <class Halve>
+  static Parts parts_of(const Range& range, const Halve& halve) {
     Parts parts{{range}, 1};
     while (parts.count < kWidth) {
       const auto largest = std::max_element(parts.range.begin(), parts.range.begin() + parts.count,
                                             [](const Range& x, const Range& y) { return x.size() < y.size(); });
       if (largest->size() < 2) break;
-      parts.range[parts.count++] = halve(*largest, turn);
+      parts.range[parts.count++] = halve(*largest);
     }
     return parts;
+  }
+  /// \param turn  to the axes across which parts are halved
+  Parts quartered(const Range& range, const Matrix3& turn) {
+    return parts_of(range, [&](Range& part) { return halve(part, turn); });
+  }
+
+  /// How many nodes the tree of so many faces has.
+  static int node_count(int faces) {
+    const Parts parts = parts_of({0, faces}, cut);
+    int count = 1;
+    for (int k = 0; k < parts.count; ++k)
+      if (parts.range[k].size() > 1) count += node_count(parts.range[k].size());
+    return count;
   }
 
   /// The same across the coordinate axes, and both halves at once.
@@ -251,36 +265,27 @@ class TreeBuilder {
     return NeedleAxes::turn_of(group);
   }
 
-  /// The tree of a range, without boxes. \param turns  of its nodes; stays empty where none is turned
-  std::vector<Node> tree_of(const Range& all, std::vector<Matrix3>& turns) {
+  /// Makes the tree of a range, without boxes, of nodes from `root` on: node_count() of them. \param turns  of all nodes; empty where none is turned
+  void make_tree(const Range& all, int root, std::vector<Node>& nodes, std::vector<Matrix3>& turns) {
     struct Task {
       int node;
       Range range;
     };
-    std::vector<Node> nodes(1);
-    std::vector<Task> tasks{{0, all}};
+    int next = root + 1;
+    std::vector<Task> tasks{{root, all}};
     while (!tasks.empty()) {
       const Task task = tasks.back();
       tasks.pop_back();
       const Matrix3 turn = turn_of(task.range);
-      if (!needles_.empty()) {
-        turns.resize(nodes.size(), Matrix3::Identity());
-        turns[task.node] = turn;
-      }
+      if (!turns.empty()) turns[task.node] = turn;
       const Parts parts = quartered(task.range, turn);
       for (int k = 0; k < parts.count; ++k) {
         const Range& range = parts.range[k];
-        if (range.size() == 1) {
-          nodes[task.node].child[k] = ~range.begin;
-          continue;
-        }
-        const int child = static_cast<int>(nodes.size());
-        nodes[task.node].child[k] = child;
-        tasks.push_back({child, range});
-        nodes.emplace_back();
+        const bool is_face = range.size() == 1;
+        nodes[task.node].child[k] = is_face ? ~range.begin : next;
+        if (!is_face) tasks.push_back({next++, range});
       }
     }
-    return nodes;
   }
 
  private:
@@ -294,14 +299,18 @@ class TreeBuilder {
     int axis = 0;
     (middles.high - middles.low).maxCoeff(&axis);
     const Vector3 across = turn.row(axis);
-    const int half = (range.begin + range.end) / 2;
-    std::nth_element(items_.begin() + range.begin, items_.begin() + half, items_.begin() + range.end,
+    const int begin = range.begin;
+    const Range second = cut(range);
+    std::nth_element(items_.begin() + begin, items_.begin() + second.begin, items_.begin() + second.end,
                      [&across](const Item& x, const Item& y) {
                        const double a = across.dot(x.middle), b = across.dot(y.middle);
                        return a != b ? a < b : x.face < y.face;
                      });
-    const Range second{half, range.end};
-    range.end = half;
+    return second;
+  }
+  static Range cut(Range& range) {
+    const Range second{(range.begin + range.end) / 2, range.end};
+    range.end = second.begin;
     return second;
   }
 
@@ -337,29 +346,28 @@ void SurfaceIndex::Tree::build(int threads) {
   const NeedleAxes needles(mesh);
   TreeBuilder builder(items, needles);
   const TreeBuilder::Parts parts = builder.quartered_by_halves({0, face_count}, threads);
-  std::array<std::vector<Node>, kWidth> below;
-  std::array<std::vector<Matrix3>, kWidth> turns_below;
+  std::array<Range, kWidth> subtree;
+  int node_count = 1;
+  for (int k = 0; k < parts.count; ++k) {
+    subtree[k] = {node_count, node_count + TreeBuilder::node_count(parts.range[k].size())};
+    node_count = subtree[k].end;
+  }
+  nodes.resize(node_count);
+  if (!needles.empty()) turns.resize(node_count, Matrix3::Identity());
   parallel_for(parts.count, threads, [&](int k) {
     const Range range = parts.range[k];
-    below[k] = builder.tree_of(range, turns_below[k]);
+    builder.make_tree(range, subtree[k].begin, nodes, turns);
     for (int i = range.begin; i < range.end; ++i) {
       order[i] = items[i].face;
       corners[i] = corners_of(items[i].face);
     }
-    bound(below[k], turns_below[k]);
+    bound(subtree[k]);
   });
-  nodes.resize(1);
-  if (!needles.empty()) turns.assign(1, Matrix3::Identity());
   for (int k = 0; k < parts.count; ++k) {
-    const int offset = static_cast<int>(nodes.size());
-    nodes[0].child[k] = offset;
-    for (Node& node : below[k])
-      for (int& child : node.child)
-        if (child >= 0 && child != kNone) child += offset;
-    nodes.insert(nodes.end(), below[k].begin(), below[k].end());
-    turns.insert(turns.end(), turns_below[k].begin(), turns_below[k].end());
-    const Matrix3 turn = needles.empty() ? Matrix3::Identity() : Matrix3(turns[offset].transpose());
-    put_below(nodes[0], k, nodes[offset], needles.empty() ? nullptr : &turn);
+    const int child = subtree[k].begin;
+    nodes[0].child[k] = child;
+    const Matrix3 turn = needles.empty() ? Matrix3::Identity() : Matrix3(turns[child].transpose());
+    put_below(nodes[0], k, nodes[child], needles.empty() ? nullptr : &turn);
   }
 }
 
@@ -376,22 +384,22 @@ void SurfaceIndex::Tree::put_below(Node& node, int lane, const Node& below, cons
     if (below.region[j] != node.region[lane]) node.region[lane] = -1;
 }
 
-/// Boxes and regions of a tree, children before their parents.
-void SurfaceIndex::Tree::bound(std::vector<Node>& tree, const std::vector<Matrix3>& turns_of_tree) const {
-  for (int n = static_cast<int>(tree.size()) - 1; n >= 0; --n) {
-    Node& node = tree[n];
+/// Boxes and regions of nodes, children before their parents.
+void SurfaceIndex::Tree::bound(const Range& subtree) {
+  for (int n = subtree.end; n-- > subtree.begin;) {
+    Node& node = nodes[n];
     for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
       const int child = node.child[k];
       if (child >= 0) {
         Matrix3 turn;
-        if (!turns_of_tree.empty()) turn = turns_of_tree[n] * turns_of_tree[child].transpose();
-        put_below(node, k, tree[child], turns_of_tree.empty() ? nullptr : &turn);
+        if (!turns.empty()) turn = turns[n] * turns[child].transpose();
+        put_below(node, k, nodes[child], turns.empty() ? nullptr : &turn);
         continue;
       }
       const int f = order[~child];
       Box box;
       for (const Vector3& corner : corners[~child]) {
-        const Vector3 p = turns_of_tree.empty() ? corner : Vector3(turns_of_tree[n] * (corner - origin) + origin);
+        const Vector3 p = turns.empty() ? corner : Vector3(turns[n] * (corner - origin) + origin);
         box.add({p, p});
       }
       node.put(k, in_units(box.low, box.high));
