@@ -608,5 +608,19 @@ TEST(MeshBuilder, ASpikeIsRefusedByItsVertex) {
   EXPECT_EQ(check_mesh(soup).back().elements, std::vector<int>{5});
 }
 
+TEST(MeshBuilder, AsksWhetherToGoOnAllTheWay) {
+  const PolygonSoup soup = test::soup_of(test::torus(600, 300));
+  RunContext context;
+  int asked = 0;
+  context.stop_requested = [&] { return ++asked, false; };
+  build_mesh(soup, context);
+  EXPECT_GT(asked, 40);
+  for (const int last : {1, asked / 3, asked / 2, asked}) {
+    int left = last;
+    context.stop_requested = [&] { return --left <= 0; };
+    EXPECT_THROW(build_mesh(soup, context), Cancelled);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_quad

@@ -185,7 +185,9 @@ TEST(NeedleAxes, LieAlongNeedlesOfOneDirection) {
 
 TEST(SurfaceIndex, SameForAnyNumberOfThreads) {
   const TriangleMesh m = test::torus(97, 45);
-  const SurfaceIndex one(m, {}), three(m, {}, 3);
+  RunContext on_three;
+  on_three.threads = 3;
+  const SurfaceIndex one(m, {}), three(m, {}, on_three);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-2, 2);
   for (int i = 0; i < 200; ++i) {
@@ -195,6 +197,20 @@ TEST(SurfaceIndex, SameForAnyNumberOfThreads) {
     one.any_in_box(p - reach, p + reach, [&](int f) { return here.push_back(f), false; });
     three.any_in_box(p - reach, p + reach, [&](int f) { return there.push_back(f), false; });
     EXPECT_EQ(here, there);
+  }
+}
+
+TEST(SurfaceIndex, AsksWhetherToGoOnWhileItIsBuilt) {
+  const TriangleMesh m = test::torus(400, 200);
+  RunContext context;
+  int asked = 0;
+  context.stop_requested = [&] { return ++asked, false; };
+  const SurfaceIndex index(m, {}, context);
+  EXPECT_GT(asked, m.face_count() / 10000) << "every few milliseconds";
+  for (const int last : {1, asked / 2, asked}) {
+    int left = last;
+    context.stop_requested = [&] { return --left <= 0; };
+    EXPECT_THROW(SurfaceIndex(m, {}, context), Cancelled);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -40,6 +41,11 @@ struct RunContext {
   void checkpoint(double fraction = 0.0) const {
     if (stop_requested && stop_requested()) throw Cancelled("cancelled during " + (stage.empty() ? "start" : stage));
     if (on_progress) on_progress(stage, stage_begin + fraction * (stage_end - stage_begin));
+  }
+
+  /// The same at every 65536th step of a loop, whose steps take some microseconds at most.
+  void checkpoint_at(std::size_t step) const {
+    if ((step & 0xffff) == 0) checkpoint();
   }
 };
 

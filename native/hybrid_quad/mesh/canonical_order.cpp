@@ -38,7 +38,7 @@ void sort_starts(std::vector<Start>& starts, std::size_t begin, std::size_t end,
 }
 
 /// For each component the half-edge to begin with, the component with the longest edge first.
-std::vector<int> starts_of(const TriangleMesh& mesh) {
+std::vector<int> starts_of(const TriangleMesh& mesh, const RunContext& context) {
   std::vector<int> all(mesh.face_count());
   std::iota(all.begin(), all.end(), 0);
   if (all.empty()) return {};
@@ -51,14 +51,16 @@ std::vector<int> starts_of(const TriangleMesh& mesh) {
     if (seen[seed]) continue;
     seen[seed] = 1;
     faces = {seed};
-    for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      context.checkpoint_at(i);
       for (int h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h) {
         const int o = mesh.opposite(h);
         if (o < 0 || seen[o / 3]) continue;
         seen[o / 3] = 1;
         faces.push_back(o / 3);
       }
-    const int h = first_halfedge(mesh, faces);
+    }
+    const int h = first_halfedge(mesh, faces, context);
     Start start{h, {mesh.edge_vector(h).squaredNorm()}, {}};
     int corner = h;
     for (int i = 1; i < 4; ++i, corner = TriangleMesh::next(corner))
@@ -75,7 +77,7 @@ std::vector<int> starts_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-CanonicalOrder canonical_order(const TriangleMesh& mesh) {
+CanonicalOrder canonical_order(const TriangleMesh& mesh, const RunContext& context) {
   CanonicalOrder order;
   order.halfedge.reserve(mesh.halfedge_count());
   std::vector<char> seen_face(mesh.face_count(), 0), seen_vertex(mesh.vertex_count(), 0);
@@ -88,9 +90,10 @@ CanonicalOrder canonical_order(const TriangleMesh& mesh) {
       order.vertex.push_back(mesh.from(h));
     }
   };
-  for (const int start : starts_of(mesh)) {
+  for (const int start : starts_of(mesh, context)) {
     std::size_t next = order.halfedge.size();
     for (add(start); next < order.halfedge.size(); ++next) {
+      context.checkpoint_at(next);
       const int o = mesh.opposite(order.halfedge[next]);
       if (o >= 0 && !seen_face[o / 3]) add(o);
     }
@@ -98,7 +101,7 @@ CanonicalOrder canonical_order(const TriangleMesh& mesh) {
   return order;
 }
 
-TriangleMesh reordered(const TriangleMesh& mesh, const CanonicalOrder& order) {
+TriangleMesh reordered(const TriangleMesh& mesh, const CanonicalOrder& order, const RunContext& context) {
   std::vector<int> new_vertex(mesh.vertex_count(), -1), new_halfedge(mesh.halfedge_count(), -1), opposite;
   std::vector<Vector3> positions;
   for (const int v : order.vertex) {
@@ -108,6 +111,7 @@ TriangleMesh reordered(const TriangleMesh& mesh, const CanonicalOrder& order) {
   for (std::size_t h = 0; h < order.halfedge.size(); ++h) new_halfedge[order.halfedge[h]] = static_cast<int>(h);
   std::vector<std::array<int, 3>> faces(mesh.face_count());
   for (std::size_t h = 0; h < order.halfedge.size(); ++h) {
+    context.checkpoint_at(h);
     const int o = mesh.opposite(order.halfedge[h]);
     faces[h / 3][h % 3] = new_vertex[mesh.from(order.halfedge[h])];
     opposite.push_back(o < 0 ? -1 : new_halfedge[o]);

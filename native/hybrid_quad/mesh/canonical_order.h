@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -14,9 +15,11 @@ struct CanonicalOrder {
 
 /// Breadth first from first_halfedge() of each component, the component with the longest edge first, of equal ones that farther
 /// from the middle. Invariant under permutations of vertices and faces, and under rigid motions unless the mesh has symmetries.
-CanonicalOrder canonical_order(const TriangleMesh& mesh);
+/// \throws Cancelled
+CanonicalOrder canonical_order(const TriangleMesh& mesh, const RunContext& context = {});
 
 /// The mesh in another order.
-TriangleMesh reordered(const TriangleMesh& mesh, const CanonicalOrder& order);
+/// \throws Cancelled
+TriangleMesh reordered(const TriangleMesh& mesh, const CanonicalOrder& order, const RunContext& context = {});
 
 }  // namespace hybrid_quad

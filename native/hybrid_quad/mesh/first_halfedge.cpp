@@ -66,7 +66,7 @@ Vector3 middle_of(const TriangleMesh& mesh, const std::vector<int>& faces) {
   return area > 0 ? Vector3(reference + moment / area) : reference;
 }
 
-int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces) {
+int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces, const RunContext& context) {
   double longest = 0;
   for (const int f : faces)
     for (int h = 3 * f; h < 3 * f + 3; ++h) longest = std::max(longest, mesh.edge_vector(h).squaredNorm());
@@ -75,11 +75,14 @@ int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces) {
     for (int h = 3 * f; h < 3 * f + 3; ++h)
       if (mesh.edge_vector(h).squaredNorm() >= (1 - kSame) * longest) list.push_back(h);
 
+  context.checkpoint();
   const Vector3 middle = middle_of(mesh, faces);
+  context.checkpoint();
   const auto distance2 = [&](int v) { return (mesh.position(v) - middle).squaredNorm(); };
   double farthest = 0;
   for (const int f : faces)
     for (const int v : mesh.face(f)) farthest = std::max(farthest, distance2(v));
+  context.checkpoint();
   const double slack = kSame * farthest;
   keep_greatest(list, slack, [&](std::size_t i) { return distance2(mesh.from(list[i])); });
   keep_greatest(list, slack, [&](std::size_t i) { return distance2(mesh.to(list[i])); });

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -13,6 +14,7 @@ Vector3 middle_of(const TriangleMesh& mesh, const std::vector<int>& faces);
 /// from the middle, in the order of its corners and of those around it. Lengths and distances count as equal when rounding
 /// can make them differ; what is equal in all of them is so by a symmetry of the component, or nearly, and coordinates decide.
 /// \param faces  of the component, in any order
-int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces);
+/// \throws Cancelled
+int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces, const RunContext& context = {});
 
 }  // namespace hybrid_quad

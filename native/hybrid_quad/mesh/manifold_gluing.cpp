@@ -53,8 +53,8 @@ struct EdgeSide {
 
 class Gluer {
  public:
-  Gluer(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces)
-      : positions_(positions), sets_(static_cast<int>(faces.size())) {
+  Gluer(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces, const RunContext& context)
+      : positions_(positions), context_(context), sets_(static_cast<int>(faces.size())) {
     out_.faces = faces;
     out_.opposite.assign(3 * faces.size(), -1);
     out_.was_flipped.assign(faces.size(), 0);
@@ -62,6 +62,7 @@ class Gluer {
 
   ManifoldGluing run() {
     collect_sides();
+    context_.checkpoint();
     glue_simple_edges();
     if (!out_.non_orientable_faces.empty()) {
       for (const auto& range : crowded_) out_.non_manifold_edges.push_back({sides_[range[0]].low, sides_[range[0]].high});
@@ -69,6 +70,7 @@ class Gluer {
     }
     glue_crowded_edges();
     orient();
+    context_.checkpoint();
     split_vertices();
     return std::move(out_);
   }
@@ -87,6 +89,7 @@ class Gluer {
   Vector3 direction_from_edge(const EdgeSide& side) const;
 
   const std::vector<Vector3>& positions_;
+  const RunContext& context_;
   ManifoldGluing out_;
   ParitySets sets_;
   std::vector<EdgeSide> sides_;
@@ -110,6 +113,7 @@ void Gluer::glue_simple_edges() {
   const int n = static_cast<int>(sides_.size());
   std::vector<int> conflicts;
   for (int i = 0, j = 0; i < n; i = j) {
+    context_.checkpoint_at(i);
     for (j = i + 1; j < n && sides_[j].low == sides_[i].low && sides_[j].high == sides_[i].high;) ++j;
     if (j - i > 2) crowded_.push_back({i, j});
     if (j - i != 2) continue;
@@ -208,6 +212,7 @@ void Gluer::split_vertices() {
   std::vector<int> fan(halfedge_count, -1);  // by outgoing half-edge
   std::vector<int> source;
   for (int start = 0; start < halfedge_count; ++start) {
+    context_.checkpoint_at(start);
     if (fan[start] >= 0) continue;
     const int id = static_cast<int>(source.size());
     source.push_back(out_.faces[start / 3][start % 3]);
@@ -240,8 +245,9 @@ void Gluer::split_vertices() {
 
 }  // namespace
 
-ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces) {
-  return Gluer(positions, faces).run();
+ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces,
+                              const RunContext& context) {
+  return Gluer(positions, faces, context).run();
 }
 
 }  // namespace hybrid_quad

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/base/types.h"
 
 namespace hybrid_quad {
@@ -24,6 +25,8 @@ struct ManifoldGluing {
 /// Glues triangles along their common edges. Where more than two faces meet, the flattest pairs stay together and the
 /// others part, or all where more than 64 do; a vertex with several fans becomes several vertices. Each component is oriented as most of its faces
 /// are; one that was inconsistent and is closed is oriented outwards.
-ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces);
+/// \throws Cancelled
+ManifoldGluing glue_triangles(const std::vector<Vector3>& positions, const std::vector<std::array<int, 3>>& faces,
+                              const RunContext& context = {});
 
 }  // namespace hybrid_quad

@@ -53,11 +53,11 @@ class MeshBuilder {
   void check_faces();
   void find_references();
   void check_positions();
-  void order();
+  void order(const RunContext& context);
   void normalize_positions();
   void check_digits(const TriangleMesh& mesh);
   [[noreturn]] void refuse_coarse_coordinates();
-  void make_triangles();
+  void make_triangles(const RunContext& context);
   void weld();
   void weld_exactly();
   bool merge_vertices(const std::vector<int>& target);
@@ -66,7 +66,7 @@ class MeshBuilder {
   void drop_duplicates();
   std::vector<int> drop(const std::vector<char>& goes);
   void drop_copies(const std::vector<char>& is_copy);
-  BuiltMesh glue();
+  BuiltMesh glue(const RunContext& context);
   void drop_negligible_components(BuiltMesh& built);
   void tell_of_remaining_faces(const BuiltMesh& built);
   void put_back(BuiltMesh& built) const;
@@ -153,8 +153,8 @@ void MeshBuilder::check_positions() {
 }
 
 /// From here on the order of the file makes no difference.
-void MeshBuilder::order() {
-  ordered_ = in_order_of_places(given_);
+void MeshBuilder::order(const RunContext& context) {
+  ordered_ = in_order_of_places(given_, context);
   is_in_order_ = true;
 }
 
@@ -190,7 +190,7 @@ void MeshBuilder::refuse_coarse_coordinates() {
          "", {});
 }
 
-void MeshBuilder::make_triangles() {
+void MeshBuilder::make_triangles(const RunContext& context) {
   std::vector<int> repeated, few, corners, flat;
   std::vector<std::size_t> given_begin{0};
   for (const int size : given_.face_sizes) given_begin.push_back(given_begin.back() + size);
@@ -199,6 +199,7 @@ void MeshBuilder::make_triangles() {
   PolygonCuts cuts(positions_, ordered_.soup);
   for (int f = 0; f < face_count(); ++f) {
     const auto begin = ordered_.soup.face_vertices.begin();
+    context.checkpoint_at(f);
     corners.assign(begin + ordered_.first_corner[f], begin + ordered_.first_corner[f + 1]);
     const std::size_t size = corners.size();
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -335,9 +336,9 @@ void MeshBuilder::drop_copies(const std::vector<char>& is_copy) {
 /// Before cracks are closed: a part would be joined to what it lies on, along its border.
 void MeshBuilder::drop_copied_parts() { drop_copies(copied_parts(positions_, triangles_)); }
 
-BuiltMesh MeshBuilder::glue() {
+BuiltMesh MeshBuilder::glue(const RunContext& context) {
   constexpr const char* kCut = "the surface is cut there";
-  ManifoldGluing glued = glue_triangles(positions_, triangles_);
+  ManifoldGluing glued = glue_triangles(positions_, triangles_, context);
   const auto polygons_of = [this](const std::vector<int>& faces) {
     std::vector<int> list;
     for (const int f : faces) list.push_back(polygon_[f]);
@@ -369,12 +370,12 @@ BuiltMesh MeshBuilder::glue() {
 
 /// The same surface gives the same mesh, in whatever order its file has it, and however it lies in space.
 void put_in_order(BuiltMesh& built, const RunContext& context) {
-  const CanonicalOrder order = canonical_order(built.mesh);
+  const CanonicalOrder order = canonical_order(built.mesh, context);
   context.checkpoint();
   std::vector<int> input_vertex, input_face;
   for (const int v : order.vertex) input_vertex.push_back(built.input_vertex[v]);
   for (std::size_t h = 0; h < order.halfedge.size(); h += 3) input_face.push_back(built.input_face[order.halfedge[h] / 3]);
-  built.mesh = reordered(built.mesh, order);
+  built.mesh = reordered(built.mesh, order, context);
   built.input_vertex = std::move(input_vertex);
   built.input_face = std::move(input_face);
 }
@@ -454,10 +455,11 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   check_faces();
   find_references();
   check_positions();
-  order();
+  context.checkpoint();
+  order(context);
   normalize_positions();
   context.checkpoint();
-  make_triangles();
+  make_triangles(context);
   context.checkpoint();
   drop_copied_parts();
   context.checkpoint();
@@ -474,14 +476,17 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   note("unwelded_vertex", "vertex", std::move(welded_), "merged with the vertex at the same place");
   note("t_junction", "vertex", std::move(split_at), "the edge beside it is split, which closes the crack");
   context.checkpoint();
-  BuiltMesh built = glue();
+  BuiltMesh built = glue(context);
   context.checkpoint();
   put_in_order(built, context);
   context.checkpoint();
   resolve_faces(built, context);
+  context.checkpoint();
   drop_negligible_components(built);
+  context.checkpoint();
   tell_of_remaining_faces(built);
   put_back(built);
+  context.checkpoint();
   check_digits(built.mesh);
   for (int& v : built.input_vertex) v = ordered_.given_vertex[v];
   for (int& f : built.input_face) f = ordered_.given_face[f];
@@ -509,7 +514,9 @@ BuiltMesh build_mesh(const PolygonSoup& soup, const RunContext& context) {
   MeshBuilder builder(soup);
   BuiltMesh built = builder.build(context);
   built.defects = std::move(builder.defects);
+  context.checkpoint();
   note_touching_vertices(built, built.defects);
+  context.checkpoint();
   return built;
 }
 

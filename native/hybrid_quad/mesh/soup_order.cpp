@@ -10,7 +10,7 @@ namespace hybrid_quad {
 namespace {
 
 /// For every used vertex the number of its place, by coordinates; 0 for others. \param count  receives how many places there are
-std::vector<int> places_of(const PolygonSoup& soup, int& count) {
+std::vector<int> places_of(const PolygonSoup& soup, int& count, const RunContext& context) {
   std::vector<char> is_used(soup.positions.size(), 0);
   for (const int v : soup.face_vertices) is_used[v] = 1;
   struct Point {
@@ -23,7 +23,9 @@ std::vector<int> places_of(const PolygonSoup& soup, int& count) {
     const Vector3& p = soup.positions[v];
     if (is_used[v]) points.push_back({p.x(), p.y(), p.z(), static_cast<int>(v)});
   }
+  context.checkpoint();
   std::sort(points.begin(), points.end());
+  context.checkpoint();
   std::vector<int> place(is_used.size(), 0);
   count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -36,14 +38,15 @@ std::vector<int> places_of(const PolygonSoup& soup, int& count) {
 
 }  // namespace
 
-OrderedSoup in_order_of_places(const PolygonSoup& given) {
+OrderedSoup in_order_of_places(const PolygonSoup& given, const RunContext& context) {
   const std::size_t face_count = given.face_sizes.size();
   int place_count = 0;
-  const std::vector<int> place = places_of(given, place_count);
+  const std::vector<int> place = places_of(given, place_count, context);
 
   // Each face from its least corner on; where a place comes twice, so that the places after it are least.
   std::vector<int> corners = given.face_vertices, places(corners.size()), begin(face_count + 1, 0);
   for (std::size_t f = 0; f < face_count; ++f) {
+    context.checkpoint_at(f);
     begin[f + 1] = begin[f] + given.face_sizes[f];
     const auto first = corners.begin() + begin[f], last = corners.begin() + begin[f + 1];
     const auto by_place = [&](int v, int w) { return place[v] < place[w]; };
@@ -69,16 +72,19 @@ OrderedSoup in_order_of_places(const PolygonSoup& given) {
   for (int p = 0; p < place_count; ++p) bucket[p + 1] += bucket[p];
   std::vector<int> fill(bucket.begin(), bucket.end() - 1);
   for (std::size_t f = 0; f < face_count; ++f) order[fill[first_place(f)]++] = static_cast<int>(f);
-  for (int p = 0; p < place_count; ++p)
+  for (int p = 0; p < place_count; ++p) {
+    context.checkpoint_at(p);
     std::stable_sort(order.begin() + bucket[p], order.begin() + bucket[p + 1], [&](int f, int g) {
       return std::lexicographical_compare(places.begin() + begin[f], places.begin() + begin[f + 1],
                                           places.begin() + begin[g], places.begin() + begin[g + 1]);
     });
+  }
 
   OrderedSoup out;
   std::vector<int> number(given.positions.size(), -1);
   out.first_corner.push_back(0);
   for (const int f : order) {
+    context.checkpoint_at(out.given_face.size());
     out.given_face.push_back(f);
     out.soup.face_sizes.push_back(given.face_sizes[f]);
     for (int c = begin[f]; c < begin[f + 1]; ++c) {

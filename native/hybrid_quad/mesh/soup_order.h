@@ -19,7 +19,8 @@ struct OrderedSoup {
 /// Faces in the order of their corners' places, each from its least corner on; vertices in the order in which faces use them.
 /// Faces of the same places stay in their order.
 /// \pre used vertices are finite, indices within range
-OrderedSoup in_order_of_places(const PolygonSoup& given);
+/// \throws Cancelled
+OrderedSoup in_order_of_places(const PolygonSoup& given, const RunContext& context = {});
 
 /// Elements ("vertex", "edge" as pairs of vertices, or "face") as they were given, ascending and each once.
 std::vector<int> given_elements(const OrderedSoup& ordered, const std::string& kind, std::vector<int> elements);

@@ -199,8 +199,8 @@ struct SurfaceIndex::Tree {
     const auto& t = mesh.face(f);
     return {mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
   }
-  void build(int threads);
-  void bound(const Range& subtree);
+  void build(const RunContext& context);
+  void bound(const Range& subtree, const RunContext& context);
   static void put_below(Node& node, int lane, const Node& below, const Matrix3* turn);
 };
 
@@ -266,7 +266,8 @@ class TreeBuilder {
   }
 
   /// Makes the tree of a range, without boxes, of nodes from `root` on: node_count() of them. \param turns  of all nodes; empty where none is turned
-  void make_tree(const Range& all, int root, std::vector<Node>& nodes, std::vector<Matrix3>& turns) {
+  void make_tree(const Range& all, int root, std::vector<Node>& nodes, std::vector<Matrix3>& turns, const RunContext& context) {
+    constexpr int kMany = 1 << 16;  // faces, which take some time to halve
     struct Task {
       int node;
       Range range;
@@ -276,6 +277,7 @@ class TreeBuilder {
     while (!tasks.empty()) {
       const Task task = tasks.back();
       tasks.pop_back();
+      if (task.range.size() > kMany) context.checkpoint();
       const Matrix3 turn = turn_of(task.range);
       if (!turns.empty()) turns[task.node] = turn;
       const Parts parts = quartered(task.range, turn);
@@ -320,21 +322,24 @@ class TreeBuilder {
 
 }  // namespace
 
-void SurfaceIndex::Tree::build(int threads) {
+void SurfaceIndex::Tree::build(const RunContext& context) {
   const int face_count = mesh.face_count();
   if (face_count == 0) return;
   std::vector<Item> items(face_count);
   normal.resize(face_count);
   constexpr int kChunk = 4096;
   std::vector<Box> box_of_chunk((face_count + kChunk - 1) / kChunk);
-  parallel_for(static_cast<int>(box_of_chunk.size()), threads, [&](int c) {
-    for (int f = c * kChunk; f < std::min(face_count, (c + 1) * kChunk); ++f) {
-      const Box box = box_of(f);
-      items[f] = {0.5 * (box.low + box.high), f};
-      normal[f] = mesh.normal(f);
-      box_of_chunk[c].add(box);
-    }
-  });
+  parallel_chunks(
+      face_count, context,
+      [&](int begin, int end) {
+        for (int f = begin; f < end; ++f) {
+          const Box box = box_of(f);
+          items[f] = {0.5 * (box.low + box.high), f};
+          normal[f] = mesh.normal(f);
+          box_of_chunk[begin / kChunk].add(box);
+        }
+      },
+      kChunk);
   Box all;
   for (const Box& box : box_of_chunk) all.add(box);
   origin = 0.5 * (all.low + all.high);
@@ -345,7 +350,9 @@ void SurfaceIndex::Tree::build(int threads) {
   // The root's children are trees of their own, which come one after the other behind it.
   const NeedleAxes needles(mesh);
   TreeBuilder builder(items, needles);
-  const TreeBuilder::Parts parts = builder.quartered_by_halves({0, face_count}, threads);
+  context.checkpoint();
+  const TreeBuilder::Parts parts = builder.quartered_by_halves({0, face_count}, context.threads);
+  context.checkpoint();
   std::array<Range, kWidth> subtree;
   int node_count = 1;
   for (int k = 0; k < parts.count; ++k) {
@@ -354,14 +361,16 @@ void SurfaceIndex::Tree::build(int threads) {
   }
   nodes.resize(node_count);
   if (!needles.empty()) turns.resize(node_count, Matrix3::Identity());
-  parallel_for(parts.count, threads, [&](int k) {
+  RunContext each = context;  // several at once have no common progress
+  each.on_progress = nullptr;
+  parallel_for(parts.count, context.threads, [&](int k) {
     const Range range = parts.range[k];
-    builder.make_tree(range, subtree[k].begin, nodes, turns);
+    builder.make_tree(range, subtree[k].begin, nodes, turns, each);
     for (int i = range.begin; i < range.end; ++i) {
       order[i] = items[i].face;
       corners[i] = corners_of(items[i].face);
     }
-    bound(subtree[k]);
+    bound(subtree[k], each);
   });
   for (int k = 0; k < parts.count; ++k) {
     const int child = subtree[k].begin;
@@ -385,8 +394,9 @@ void SurfaceIndex::Tree::put_below(Node& node, int lane, const Node& below, cons
 }
 
 /// Boxes and regions of nodes, children before their parents.
-void SurfaceIndex::Tree::bound(const Range& subtree) {
+void SurfaceIndex::Tree::bound(const Range& subtree, const RunContext& context) {
   for (int n = subtree.end; n-- > subtree.begin;) {
+    context.checkpoint_at(n);
     Node& node = nodes[n];
     for (int k = 0; k < kWidth && node.child[k] != kNone; ++k) {
       const int child = node.child[k];
@@ -408,15 +418,13 @@ void SurfaceIndex::Tree::bound(const Range& subtree) {
   }
 }
 
-SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads) {
+SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, const RunContext& context) {
   const auto tree = std::make_shared<Tree>();
   tree->mesh = mesh;
   tree->region = std::move(face_region);
-  tree->build(threads);
+  tree->build(context);
   tree_ = tree;
 }
-
-SurfaceIndex::SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region) : SurfaceIndex(mesh, std::move(face_region), 1) {}
 
 SurfaceIndex SurfaceIndex::without_regions() const {
   SurfaceIndex same = *this;

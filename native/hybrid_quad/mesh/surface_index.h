@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/mesh/triangle_mesh.h"
 
 namespace hybrid_quad {
@@ -26,9 +27,8 @@ inline double with_rounding(double squared_distance, const Vector3& p) {
 /// Nearest points of a triangle mesh: a bounding-volume tree with an optional filter by region and by normal.
 class SurfaceIndex {
  public:
-  /// \param face_region  #F, may be empty (no filter by region)  \param threads  the index does not depend on it
-  SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, int threads);
-  SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region);
+  /// \param face_region  #F, may be empty (no filter by region)  \throws Cancelled
+  SurfaceIndex(const TriangleMesh& mesh, std::vector<int> face_region, const RunContext& context = {});
   /// The index of the same surface without regions, which shares all that this one holds.
   SurfaceIndex without_regions() const;
 

@@ -196,9 +196,9 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
       const Component& c = components[i];
       add_directions(c.mesh, c.vertex, c.face, domain.values, domain.options, found.wishes[i]);
       if (!found.wishes[i].guides.empty() && !found.wishes[i].index)
-        found.wishes[i].index = recalled(context.cache, {StageCache::Level::kPlan, "index of component", static_cast<int>(i)}, [&] {
-          return std::make_shared<const SurfaceIndex>(c.mesh, std::vector<int>{}, context.threads);
-        });
+        found.wishes[i].index =
+            recalled(context.cache, {StageCache::Level::kPlan, "index of component", static_cast<int>(i)},
+                     [&] { return std::make_shared<const SurfaceIndex>(c.mesh, std::vector<int>{}, plan_context); });
     }
     return found;
   });
@@ -212,7 +212,7 @@ std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
     const TriangleMesh& whole = surface_of(run);
     if (run.plans.size() == 1 && are_same_faces(run.plans[0].mesh, whole))
       return std::make_shared<const SurfaceIndex>(run.plans[0].index->without_regions());
-    return std::make_shared<const SurfaceIndex>(whole, std::vector<int>{}, run.context.threads);
+    return std::make_shared<const SurfaceIndex>(whole, std::vector<int>{}, run.context);
   });
 }
 

@@ -105,7 +105,7 @@ void shorten_for_counts(ComponentPlan& plan, const RunContext& context) {
 void plan_lengths(ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
   plan.chains = plan_curve_counts(plan.mesh, plan.asked_chains, plan.features);
   plan.curve_planes = seam_planes(plan.mesh, plan.features, mirror_planes);
-  plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region, context.threads);
+  plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region, context);
   FeatureSizeOptions feature_size;
   feature_size.least_ratio = plan.least_ratio;
   plan.target = asked_lengths(*plan.index, plan.features, plan.length, plan.density, feature_size, context);

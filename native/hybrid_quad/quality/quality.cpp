@@ -213,7 +213,7 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
   const double diagonal = input.mesh().diagonal();
   if (quads.quads.empty() || !(diagonal > 0)) return distance;
   const TriangleMesh triangles = triangulated(quads);
-  const SurfaceIndex output(triangles, {}, context.threads);
+  const SurfaceIndex output(triangles, {}, context);
   const Tally there = one_sided_distance(triangles, input, samples / 2, context);
   const Tally back = one_sided_distance(input.mesh(), output, samples / 2, context);
   distance.quads_to_input_max = 100 * there.largest / diagonal;
@@ -224,7 +224,7 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
 
 std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context) {
   const TriangleMesh triangles = triangulated(quads);
-  const SurfaceIndex index(triangles, {}, context.threads);
+  const SurfaceIndex index(triangles, {}, context);
   std::vector<SurfacePoint> out(points.size());
   parallel_chunks(static_cast<int>(points.size()), context, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
