@@ -12,7 +12,8 @@ BLENDER_PACKAGES=(blender python3-numpy)
 TEST_PACKAGES=(libgtest-dev python3-pytest)
 
 export CMAKE_GENERATOR=Ninja
-export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the wheel and the native tests compile the same files
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the wheel and the native tests compile the same files,
+export CXX=g++                             # known as the same if the compiler goes by the same name
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INPUT=1
 
 say() { printf '\n== %s\n' "$*"; }

@@ -622,5 +622,21 @@ TEST(MeshBuilder, AsksWhetherToGoOnAllTheWay) {
   }
 }
 
+TEST(MeshBuilder, DoesNotAskForEachOfManySmallParts) {
+  PolygonSoup soup;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 at(3.0 * i, 0, 0);
+    const int first = static_cast<int>(soup.positions.size());
+    for (const Vector3& corner : {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)}) soup.positions.push_back(at + corner);
+    soup.face_sizes.push_back(3);
+    for (int k = 0; k < 3; ++k) soup.face_vertices.push_back(first + k);
+  }
+  RunContext context;
+  int asked = 0;
+  context.stop_requested = [&] { return ++asked, false; };
+  build_mesh(soup, context);
+  EXPECT_LT(asked, 100);
+}
+
 }  // namespace
 }  // namespace hybrid_quad

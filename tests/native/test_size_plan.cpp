@@ -206,6 +206,7 @@ TEST(SizePlan, OfExactWishesWhatIsAFeatureBesidesStays) {
 
 TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1));
+  bool has_another_plan = false;
   const auto features_for = [&](double quads, const MarkedEdges& marked) {
     std::vector<ComponentPlan> plans{
         plan_component(slab, std::sqrt(slab.total_area() / quads), marked, {}, Wishes{}, RemeshOptions{}, RunContext{})};
@@ -213,16 +214,27 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
     make_room_for_count(plans, quads, 0, RunContext{});
     EXPECT_EQ(violations_of(plans[0].features, plans[0].mesh), std::vector<std::string>{});
     EXPECT_EQ(plans[0].given_way > 0, plans[0].features.curves.size() < 12);
+    if (const auto& all = plans[0].with_all) {
+      EXPECT_GT(all->features.curves.size(), plans[0].features.curves.size());
+      EXPECT_LT(all->given_way, plans[0].given_way);
+      EXPECT_EQ(violations_of(all->features, all->mesh), std::vector<std::string>{});
+    }
+    has_another_plan = plans[0].with_all != nullptr;
     return plans[0].features.curves.size();
   };
   EXPECT_EQ(features_for(400, {}), 12u);
+  EXPECT_FALSE(has_another_plan) << "none gave way";
   EXPECT_LT(features_for(16, {}), 12u);
+  EXPECT_TRUE(has_another_plan) << "edges along all would be fewer than quads";
+  EXPECT_LT(features_for(6, {}), 12u);
+  EXPECT_FALSE(has_another_plan) << "and beyond reach of six";
   MarkedEdges all;
   const FeatureGraph features = detect_features(slab, FeatureOptions{}, RunContext{});
   for (int h = 0; h < slab.halfedge_count(); ++h)
     if (features.is_feature(h) && slab.opposite(h) < h) all.ends.push_back({slab.from(h), slab.to(h)});
   all.guides.assign(all.ends.size(), -1);
   EXPECT_EQ(features_for(16, all), 12u);
+  EXPECT_FALSE(has_another_plan);
 }
 
 TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {

@@ -11,6 +11,7 @@ import hybrid_quad
 import variants
 from hybrid_quad.core.mesh_io import read_mesh
 from hybrid_quad.core.validation import scaled_jacobian, violations
+from support import surfaces
 from support.results import assert_sound
 
 HERE = Path(__file__).resolve().parents[1] / "data" / "meshes"
@@ -86,6 +87,24 @@ def test_patches_of_models_of_the_repository_are_filled_by_their_morse_functions
 def test_patches_of_the_collection_are_filled_by_their_morse_functions(name):
     patches = hybrid_quad.remesh(*read_mesh(COLLECTION / "dev" / f"{name}.obj")).report["patches"]
     assert patches["combinatorial_area_fraction"] < 0.01
+
+
+@pytest.mark.parametrize("quads", [300, 500, 800])
+def test_bars_thinner_than_quads_stay_bars(quads):
+    """Edges along them, by angle, take most of the quads; without these the bars melt (docs/decisions/0043)."""
+    bar, height = 1.0, 2.0
+    vertices, faces = surfaces.grille(bars=12, bar=bar, gap=4.0, height=height)
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, threads=2)
+    assert_sound(result, faces)
+    assert abs(len(result.quads) / quads - 1) < 0.05
+    usual_length = np.sqrt(
+        np.linalg.norm(np.cross(*np.diff(vertices[faces], axis=1).swapaxes(0, 1)), axis=1).sum() / 2 / quads
+    )
+    assert bar < usual_length / 2, "or there is room for all"
+    middles = result.vertices[result.quads].mean(axis=1)
+    assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < 0.01 * bar
+    assert hybrid_quad.surface_distances(np.concatenate([result.vertices, middles]), vertices, faces).max() < 0.01 * bar
+    assert scaled_jacobian(result.vertices, result.quads).min() > 0.1
 
 
 @pytest.mark.slow

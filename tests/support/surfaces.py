@@ -77,6 +77,30 @@ def quad_box(n: int = 4) -> tuple[np.ndarray, np.ndarray]:
     return np.array(list(vertices), float) / n, np.array(faces)
 
 
+def grille(
+    bars: int, bar: float, gap: float, height: float, length: float = 40.0, frame: float = 10.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """A plate with a row of slots and bars between them: a frame that wide, bars that long, everything `height` thick."""
+    across = np.concatenate(
+        [[0, frame], frame + gap + np.repeat(np.arange(bars) * (gap + bar), 2) + np.tile([0, bar], bars)]
+    )
+    across = np.concatenate([across, across[-1] + gap + np.array([0, frame])])
+    along = np.array([0, frame, frame + length, 2 * frame + length])
+    is_solid = np.pad(np.ones((len(across) - 1, 3), bool), 1)
+    is_solid[2:-2:2, 2] = False
+    number: dict[tuple[int, int, int], int] = {}
+    quads = []
+    for i, j in np.argwhere(is_solid) - 1:
+        (a, b), (c, d) = ((i, j), (i + 1, j)), ((i + 1, j + 1), (i, j + 1))
+        sides = [[(*a, 1), (*b, 1), (*c, 1), (*d, 1)], [(*a, 0), (*d, 0), (*c, 0), (*b, 0)]]
+        for (di, dj), (p, q) in {(0, -1): (a, b), (1, 0): (b, c), (0, 1): (c, d), (-1, 0): (d, a)}.items():
+            if not is_solid[i + 1 + di, j + 1 + dj]:
+                sides.append([(*p, 0), (*q, 0), (*q, 1), (*p, 1)])
+        quads += [[number.setdefault(corner, len(number)) for corner in side] for side in sides]
+    vertices = np.array([(across[i], along[j], k * height) for i, j, k in number])
+    return vertices, _triangles_of(np.array(quads))
+
+
 def mixed_polygons() -> tuple[np.ndarray, list[list[int]]]:
     """A prism over an L: two concave hexagons and six quads, closed."""
     outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]

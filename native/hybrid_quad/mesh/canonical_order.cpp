@@ -47,12 +47,13 @@ std::vector<int> starts_of(const TriangleMesh& mesh, const RunContext& context) 
   std::vector<Start> starts;
   std::vector<int> faces;
   double greatest2 = 0;
+  std::size_t steps = 0;
   for (int seed = 0; seed < mesh.face_count(); ++seed) {
     if (seen[seed]) continue;
     seen[seed] = 1;
     faces = {seed};
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      context.checkpoint_at(i);
+      context.checkpoint_at(++steps);
       for (int h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h) {
         const int o = mesh.opposite(h);
         if (o < 0 || seen[o / 3]) continue;

@@ -67,6 +67,9 @@ Vector3 middle_of(const TriangleMesh& mesh, const std::vector<int>& faces) {
 }
 
 int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces, const RunContext& context) {
+  const auto ask = [&] {
+    if (faces.size() > 65536) context.checkpoint();  // small ones are many: whoever goes through them asks
+  };
   double longest = 0;
   for (const int f : faces)
     for (int h = 3 * f; h < 3 * f + 3; ++h) longest = std::max(longest, mesh.edge_vector(h).squaredNorm());
@@ -75,14 +78,14 @@ int first_halfedge(const TriangleMesh& mesh, const std::vector<int>& faces, cons
     for (int h = 3 * f; h < 3 * f + 3; ++h)
       if (mesh.edge_vector(h).squaredNorm() >= (1 - kSame) * longest) list.push_back(h);
 
-  context.checkpoint();
+  ask();
   const Vector3 middle = middle_of(mesh, faces);
-  context.checkpoint();
+  ask();
   const auto distance2 = [&](int v) { return (mesh.position(v) - middle).squaredNorm(); };
   double farthest = 0;
   for (const int f : faces)
     for (const int v : mesh.face(f)) farthest = std::max(farthest, distance2(v));
-  context.checkpoint();
+  ask();
   const double slack = kSame * farthest;
   keep_greatest(list, slack, [&](std::size_t i) { return distance2(mesh.from(list[i])); });
   keep_greatest(list, slack, [&](std::size_t i) { return distance2(mesh.to(list[i])); });

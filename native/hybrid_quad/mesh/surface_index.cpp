@@ -322,9 +322,11 @@ class TreeBuilder {
 
 }  // namespace
 
-void SurfaceIndex::Tree::build(const RunContext& context) {
+void SurfaceIndex::Tree::build(const RunContext& given_context) {
   const int face_count = mesh.face_count();
   if (face_count == 0) return;
+  RunContext context = given_context;
+  context.on_progress = nullptr;  // several parts at once have no common progress
   std::vector<Item> items(face_count);
   normal.resize(face_count);
   constexpr int kChunk = 4096;
@@ -361,16 +363,14 @@ void SurfaceIndex::Tree::build(const RunContext& context) {
   }
   nodes.resize(node_count);
   if (!needles.empty()) turns.resize(node_count, Matrix3::Identity());
-  RunContext each = context;  // several at once have no common progress
-  each.on_progress = nullptr;
   parallel_for(parts.count, context.threads, [&](int k) {
     const Range range = parts.range[k];
-    builder.make_tree(range, subtree[k].begin, nodes, turns, each);
+    builder.make_tree(range, subtree[k].begin, nodes, turns, context);
     for (int i = range.begin; i < range.end; ++i) {
       order[i] = items[i].face;
       corners[i] = corners_of(items[i].face);
     }
-    bound(subtree[k], each);
+    bound(subtree[k], context);
   });
   for (int k = 0; k < parts.count; ++k) {
     const int child = subtree[k].begin;

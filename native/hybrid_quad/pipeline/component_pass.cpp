@@ -194,7 +194,9 @@ class ComponentRemesher {
 
   int most_tries() const {
     constexpr int kOfMany = 4, kOfFew = 7;
-    return plan_.quads < kFew && settings_.quads_factor == 1 && settings_.kind != PassKind::kAsNeeded ? kOfFew : kOfMany;
+    return plan_.quads < kFew && !settings_.is_doubtful && settings_.quads_factor == 1 && settings_.kind != PassKind::kAsNeeded
+               ? kOfFew
+               : kOfMany;
   }
 
   /// Passes after the first are there for flawed quads: there the count matters less.

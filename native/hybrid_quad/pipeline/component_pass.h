@@ -18,6 +18,7 @@ struct PassSettings {
   double curl_weight = 1e-5;
   PassKind kind = PassKind::kFirst;
   bool is_rough = false;  ///< the number is met afterwards, quad by quad
+  bool is_doubtful = false;  ///< so that few tries at the number have to do
 };
 
 /// All stages from the working surface to the improved quads, with tries at the number of quads.

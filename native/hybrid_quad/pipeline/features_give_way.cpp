@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "hybrid_quad/features/features_with_room.h"
 #include "hybrid_quad/mesh/segment_index.h"
@@ -13,6 +15,8 @@ namespace {
 // Edges that features must have, over quads: up to the first number all stay; where there are more, they give way down to
 // the second.
 constexpr double kTooCrowded = 0.45, kRoomy = 0.3;
+// Up to this number all may have their edges, in quads that are long and thin.
+constexpr double kInReach = 1;
 // The same of edges shorter than quads, and how far all give way where these are too many.
 constexpr double kTooShort = 0.02, kHardlyAnyShort = 0.006, kAiry = 0.15;
 
@@ -132,8 +136,13 @@ void merge_double_lines(ComponentPlan& plan, double length, const RunContext& co
 bool make_room(ComponentPlan& plan, const RunContext& context) {
   const double length = usual_length(plan);
   const auto crowding_of = [&](const FeatureGraph& features) { return crowding(plan.mesh, features, plan.quads, length); };
-  plan.was_crowded = crowding_of(plan.features) > kTooCrowded;
-  return plan.was_crowded && widen_gaps(plan, length, context, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; });
+  const double before = crowding_of(plan.features);
+  plan.was_crowded = before > kTooCrowded;
+  if (!plan.was_crowded) return false;
+  auto with_all = before <= kInReach ? std::make_shared<const ComponentPlan>(plan) : nullptr;
+  if (!widen_gaps(plan, length, context, [&](const FeatureGraph& fewer) { return crowding_of(fewer) <= kRoomy; })) return false;
+  plan.with_all = std::move(with_all);
+  return true;
 }
 
 bool make_room_for_shapes(ComponentPlan& plan, const RunContext& context) {

@@ -212,7 +212,8 @@ std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {
     const TriangleMesh& whole = surface_of(run);
     if (run.plans.size() == 1 && are_same_faces(run.plans[0].mesh, whole))
       return std::make_shared<const SurfaceIndex>(run.plans[0].index->without_regions());
-    return std::make_shared<const SurfaceIndex>(whole, std::vector<int>{}, run.context);
+    return std::make_shared<const SurfaceIndex>(whole, std::vector<int>{},
+                                                run.context.in_stage("features and sizes", 0.04, 0.04));
   });
 }
 

@@ -36,6 +36,8 @@ struct ComponentPlan {
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
+  std::shared_ptr<const ComponentPlan>
+      with_all;  ///< the plan before they did, where quads that follow them all are not beyond reach; null: else
   int given_way = 0;            ///< feature curves by angle that gave way to the number of quads or to others
   int marks_given_way = 0;  ///< curves of marked edges and of guides that gave way to valid quads
 };
