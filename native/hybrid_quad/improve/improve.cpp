@@ -60,15 +60,15 @@ void bind(Workpiece& piece, const RunContext& context) {
 struct Improved {
   QuadMesh quads;
   ImproveReport report;
-  bool are_held = false;  ///< by tips
+  std::vector<Vector3> tips;  ///< that held some of them
 };
 
 /// One round of everything; quads in `locked` stay as they are.
-/// \param hold  whether tips hold their quads
-Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, bool hold, const TriangleMesh& input,
+/// \param released  tips that hold nothing
+Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, const std::vector<Vector3>& released, const TriangleMesh& input,
                       const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
                       const ImproveOptions& options, const RunContext& context) {
-  Improved improved{quads, {}, false};
+  Improved improved{quads, {}, {}};
   ImproveReport& report = improved.report;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
   // Where many are inverted, and a round leaves more than such a part of them, another hardly helps; few are worth all rounds.
@@ -79,10 +79,10 @@ Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, bo
   for (int q = 0; q < piece.mesh.quad_count(); ++q)
     if (locked[q]) piece.mesh.lock(q);
   bind(piece, context);
-  TipPulls tips(piece);
-  improved.are_held = hold && !tips.empty();
+  TipPulls tips(piece, released);
+  improved.tips = tips.points();
   SmootherOptions smoothing = smoothing_of(options, context.threads);
-  if (improved.are_held) smoothing.tips = &tips;
+  if (!tips.empty()) smoothing.tips = &tips;
   Smoother smoother(piece, smoothing);
   if (options.edit_connectivity)
     report.connectivity_moves = edit_connectivity(piece, smoother, context);
@@ -153,12 +153,26 @@ double area_of(const QuadMesh& m) {
   return sum;
 }
 
+/// Lets those of the tips go that are nearest to flawed quads, which may be in each other's way because tips hold them.
+/// \param released  tips that did already; receives the others
+void release_tips(const std::vector<Vector3>& tips, const QuadMesh& quads, const std::vector<int>& flawed, std::vector<Vector3>& released) {
+  const std::vector<Vector3> before = released;
+  const auto is_in = [](const std::vector<Vector3>& points, const Vector3& p) { return std::find(points.begin(), points.end(), p) != points.end(); };
+  for (const int q : flawed) {
+    const Vector3 middle = middle_of(quads, q);
+    const Vector3* nearest = nullptr;
+    for (const Vector3& tip : tips)
+      if (!is_in(before, tip) && (!nearest || (tip - middle).squaredNorm() < (*nearest - middle).squaredNorm())) nearest = &tip;
+    if (nearest && !is_in(released, *nearest)) released.push_back(*nearest);
+  }
+}
+
 }  // namespace
 
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                             const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
-  constexpr int kAttempts = 5;
+  constexpr int kAttempts = 5, kReleases = 3;
   const SurfaceIndex& judged = whole ? *whole : index;
   // Only where something is flawed does it matter what was before.
   std::optional<Restoration> restoration;
@@ -167,31 +181,34 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
     return *restoration;
   };
   const std::vector<char> none(quads.quads.size(), 0);
-  const auto attempted = [&](bool hold, std::vector<int>& flawed) {
-    Improved now = improve_once(quads, restoration ? restoration->locked() : none, hold, input, features, index, judged, options, context);
+  std::vector<Vector3> released;
+  std::vector<int> flawed;
+  const auto attempted = [&] {
+    Improved now = improve_once(quads, restoration ? restoration->locked() : none, released, input, features, index, judged, options, context);
     flawed = flawed_quads(now.quads, judged, options.agreement, context.threads);
     now.report.flawed_after = static_cast<int>(flawed.size());
     now.report.restored_quads = restoration ? restoration->locked_count() : 0;
+    now.report.released_tips = static_cast<int>(released.size());
     return now;
   };
-  std::vector<int> flawed;
-  Improved now = attempted(true, flawed), best;
-  // Quads that tips hold may be in each other's way: all is tried without, and the better kept in the end.
-  std::optional<Improved> held;
-  if (now.are_held && !flawed.empty()) {
-    held = std::move(now);
-    now = attempted(false, flawed);
+  // The best of some attempts, each with more of what was extracted around flawed quads.
+  const auto best_attempt = [&] {
+    restoration.reset();
+    Improved latest = attempted(), best = latest;
+    for (int attempt = 1; attempt < kAttempts && is_worth_another_attempt(best.report.flawed_after, best.quads.quads.size()); ++attempt) {
+      if (!before().give_up_around(latest.quads, flawed)) break;
+      latest = attempted();
+      if (latest.report.flawed_after < best.report.flawed_after) best = latest;
+    }
+    return best;
+  };
+  Improved best = best_attempt();
+  // Quads that tips hold may be in each other's way: where nothing else helps none are held.
+  if (best.report.flawed_after > 0 && !best.tips.empty()) {
+    released = best.tips;
+    Improved now = best_attempt();
+    if (now.report.flawed_after < best.report.flawed_after) best = std::move(now);
   }
-  for (int attempt = 0;;) {
-    const bool is_better = attempt == 0 || now.report.flawed_after < best.report.flawed_after;
-    const bool go_on = ++attempt < kAttempts && is_worth_another_attempt(now.report.flawed_after, now.quads.quads.size()) && is_better &&
-                       before().give_up_around(now.quads, flawed);
-    if (is_better) best = std::move(now);
-    if (!go_on) break;
-    now = attempted(false, flawed);
-  }
-  if (held) best.report.released_tips = 1;
-  if (held && held->report.flawed_after < best.report.flawed_after) best = std::move(*held);
   ImproveReport& report = best.report;
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;

@@ -107,7 +107,7 @@ std::vector<int> live_quads(const EditMesh& mesh) {
 
 }  // namespace
 
-TipPulls::TipPulls(const Workpiece& piece) {
+TipPulls::TipPulls(const Workpiece& piece, const std::vector<Vector3>& released) {
   const EditMesh& mesh = piece.mesh;
   std::vector<double> defect(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) defect[v] = mesh.valence(v) > 0 ? angle_defect(mesh, v) : 0;
@@ -118,7 +118,10 @@ TipPulls::TipPulls(const Workpiece& piece) {
     const int tip = tip_at(piece, defect, q);
     if (tip >= 0) quad_of.emplace(tip, q);
   }
-  for (const auto& [v, q] : quad_of) tips_.push_back({piece.input.position(v), q});
+  for (const auto& [v, q] : quad_of) {
+    const Vector3& point = piece.input.position(v);
+    if (std::find(released.begin(), released.end(), point) == released.end()) tips_.push_back({point, q});
+  }
 }
 
 void TipPulls::attach(const EditMesh& mesh) {

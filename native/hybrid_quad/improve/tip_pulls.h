@@ -18,7 +18,8 @@ namespace hybrid_quad {
 class TipPulls {
  public:
   /// Finds the tips from the quads as they are. \pre piece.bind_all
-  explicit TipPulls(const Workpiece& piece);
+  /// \param released  tips that pull at nothing, as points() has them
+  explicit TipPulls(const Workpiece& piece, const std::vector<Vector3>& released = {});
 
   /// Each tip pulls at the quad that is nearest to it now. To be called when vertices or quads have changed.
   void attach(const EditMesh& mesh);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -92,14 +91,6 @@ double mean_shape(const QuadMesh& mesh) {
   return sum / static_cast<double>(mesh.quads.size());
 }
 
-/// Mean distance between the quads and the surface, both ways, in edges of usual length.
-double mean_distance_in_edges(const QuadMesh& mesh, const ComponentPlan& plan, const RunContext& context) {
-  constexpr int kSamplesPerQuad = 8;
-  const int samples = std::clamp(kSamplesPerQuad * static_cast<int>(mesh.quads.size()), 4000, 100000);
-  const double length = std::sqrt(plan.mesh.total_area() / static_cast<double>(mesh.quads.size()));
-  return surface_distance(mesh, *plan.index, context, samples).mean / 100 * plan.mesh.diagonal() / length;
-}
-
 /// A first pass and the plan that it follows.
 struct FirstPass {
   ComponentPlan plan;
@@ -152,7 +143,7 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
     settings.is_doubtful = pass.plan.given_way < planned.given_way;
     try {
       pass.result = run_pass(pass.plan, whole, wishes, guides, options, settings, its_clock, its_context);
-      pass.distance = mean_distance_in_edges(pass.result.mesh, planned, its_context.in_stage("quality", 1, 1));
+      pass.distance = mean_distance_in_edges(pass.result.mesh, *planned.index, its_context.in_stage("quality", 1, 1));
     } catch (const InternalError& error) {
       pass.error = error;
     }

@@ -202,10 +202,14 @@ class ComponentRemesher {
   /// Passes after the first are there for flawed quads: there the count matters less.
   ExtractionChoice choice_of_tries(int tries) const {
     constexpr double kNearAsNeeded = 0.15, kLastResort = 2, kFar = 0.15, kRough = 0.5;
-    if (settings_.is_rough) return ExtractionChoice(plan_.quads, kRough, 1, kRough);
-    if (settings_.kind == PassKind::kFirst) return ExtractionChoice(plan_.quads, count_tolerance(), 2, kFar);
-    if (settings_.kind == PassKind::kAgain) return ExtractionChoice(plan_.quads, kNearAsNeeded, 2, kFar);
-    return ExtractionChoice(plan_.quads, kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries, kFar);
+    const auto choice = [&](double tolerance, int enough_with_flaws, double far) {
+      return ExtractionChoice(plan_.quads, tolerance, enough_with_flaws, far,
+                              [&](const QuadMesh& quads) { return mean_distance_in_edges(quads, *plan_.index, context_.in_stage("improve", 0.97, 0.97)); });
+    };
+    if (settings_.is_rough) return choice(kRough, 1, kRough);
+    if (settings_.kind == PassKind::kFirst) return choice(count_tolerance(), 2, kFar);
+    if (settings_.kind == PassKind::kAgain) return choice(kNearAsNeeded, 2, kFar);
+    return choice(kNearAsNeeded, settings_.quads_factor < kLastResort ? 1 : tries, kFar);
   }
 
   /// Rows that counted curves call for are not paid for by ever larger quads everywhere else.

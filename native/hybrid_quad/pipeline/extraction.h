@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,18 +25,22 @@ struct Extraction {
   int flawed = 0;            ///< quads, after improvement
   int missed = 0;            ///< missed_counts()
   double count_error = 0;    ///< | log(count / asked) |, after improvement
+  std::optional<double> distance;  ///< mean_distance_in_edges(), where it was to be compared
 
   double count() const { return static_cast<double>(mesh.quads.size()); }
 };
 
-/// Of several tries, the one to go on with: the one with the fewest flaws, then the one nearest to the number asked for.
+/// Of several tries, the one to go on with: the one with the fewest flaws, then the one nearest to the number asked for; but a lost limb,
+/// a few hundredths of an edge length in the mean, is worse than a few hundredths of the number, which can be settled afterwards.
 class ExtractionChoice {
  public:
+  using Distance = std::function<double(const QuadMesh&)>;
+  /// \param distance  of quads from the surface, in the mean, in edge lengths: measured once there is something to compare
   /// \param tolerance  of the logarithm of the number
   /// \param enough_with_flaws  so many tries near the number, with flaws, are enough
   /// \param far  so far off (tolerance) improving makes no sense
-  ExtractionChoice(double quads_asked, double tolerance, int enough_with_flaws, double far)
-      : asked_(quads_asked), tolerance_(tolerance), far_(far), enough_(enough_with_flaws) {}
+  ExtractionChoice(double quads_asked, double tolerance, int enough_with_flaws, double far, Distance distance)
+      : asked_(quads_asked), tolerance_(tolerance), far_(far), enough_(enough_with_flaws), distance_(std::move(distance)) {}
 
   bool any() const { return best_.has_value(); }
   /// How many times as many quads as in the end have to be extracted: improvement takes some.
@@ -54,8 +58,7 @@ class ExtractionChoice {
     e.count_error = error_of(e.count());
     const bool is_near = e.count_error < tolerance_;
     near_with_flaws_ += is_near && e.flawed > 0;
-    const auto rank = [](const Extraction& x) { return std::make_tuple(x.flawed, x.missed, x.count_error); };
-    if (!best_ || rank(e) < rank(*best_)) best_ = std::move(e);
+    if (!best_ || is_better(e, *best_)) best_ = std::move(e);
     is_done_ = (is_near && best_->flawed == 0) || near_with_flaws_ >= enough_;
   }
   bool is_done() const { return is_done_; }
@@ -66,11 +69,20 @@ class ExtractionChoice {
   Extraction best() { return std::move(*best_); }
 
  private:
+  bool is_better(Extraction& one, Extraction& other) const {
+    const auto soundness = [](const Extraction& x) { return std::make_pair(x.flawed, x.missed); };
+    if (soundness(one) != soundness(other)) return soundness(one) < soundness(other);
+    for (Extraction* x : {&one, &other})
+      if (!x->distance) x->distance = distance_(x->mesh);
+    constexpr double kDistance = 3;  // an edge length weighs as much as so many times the number
+    return one.count_error + kDistance * *one.distance < other.count_error + kDistance * *other.distance;
+  }
   double error_of(double count) const { return std::abs(std::log(count / asked_)); }
   double error(const Extraction& e) const { return error_of(e.count() / lost_); }
 
   double asked_, tolerance_, far_;
   int enough_;
+  Distance distance_;
   double lost_ = 1;
   int near_with_flaws_ = 0;
   bool is_done_ = false;

@@ -222,6 +222,13 @@ SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& inpu
   return distance;
 }
 
+double mean_distance_in_edges(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context) {
+  constexpr int kSamplesPerQuad = 8, kLeast = 4000, kMost = 100000;
+  const int samples = std::clamp(kSamplesPerQuad * static_cast<int>(quads.quads.size()), kLeast, kMost);
+  const double length = std::sqrt(input.mesh().total_area() / static_cast<double>(quads.quads.size()));
+  return surface_distance(quads, input, context, samples).mean / 100 * input.mesh().diagonal() / length;
+}
+
 std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context) {
   const TriangleMesh triangles = triangulated(quads);
   const SurfaceIndex index(triangles, {}, context);

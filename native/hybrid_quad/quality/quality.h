@@ -93,6 +93,9 @@ std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, c
 SurfaceDistance surface_distance(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context,
                                  int samples = 40000);
 
+/// Mean of surface_distance() by few samples, in usual edge lengths of the quads.
+double mean_distance_in_edges(const QuadMesh& quads, const SurfaceIndex& input, const RunContext& context);
+
 /// How far one surface is from another, in scene units: from evenly spread samples and the vertices. The same for any
 /// number of threads.
 struct DirectedDistance {
