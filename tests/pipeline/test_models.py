@@ -107,6 +107,17 @@ def test_bars_thinner_than_quads_stay_bars(quads):
     assert scaled_jacobian(result.vertices, result.quads).min() > 0.1
 
 
+@pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])
+def test_rings_hardly_wider_than_quads_stay_rings(tube, quads):
+    """Four quads around the tube have better shapes where it is wider, so that smoothing alone draws them together (docs/decisions/0051)."""
+    vertices, faces = surfaces.torus(160, 40, tube)
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None, threads=2)
+    assert_sound(result, faces)
+    length = np.sqrt(4 * np.pi**2 * tube / len(result.quads))
+    assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < 0.5 * length
+    assert scaled_jacobian(result.vertices, result.quads).mean() > 0.8
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(
     not (COLLECTION / "dev" / "igl_beetle.obj").exists(), reason="no collection of meshes beside the repository"

@@ -61,6 +61,7 @@ struct Improved {
   QuadMesh quads;
   ImproveReport report;
   std::vector<Vector3> tips;  ///< that held some of them
+  std::vector<int> flawed;
 };
 
 /// One round of everything; quads in `locked` stay as they are.
@@ -68,7 +69,7 @@ struct Improved {
 Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, const std::vector<Vector3>& released, const TriangleMesh& input,
                       const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
                       const ImproveOptions& options, const RunContext& context) {
-  Improved improved{quads, {}, {}};
+  Improved improved{quads, {}, {}, {}};
   ImproveReport& report = improved.report;
   constexpr int kSweepsAfter = 6, kLastRounds = 3;
   // Where many are inverted, and a round leaves more than such a part of them, another hardly helps; few are worth all rounds.
@@ -153,69 +154,128 @@ double area_of(const QuadMesh& m) {
   return sum;
 }
 
-/// Lets those of the tips go that are nearest to flawed quads, which may be in each other's way because tips hold them.
-/// \param released  tips that did already; receives the others
-void release_tips(const std::vector<Vector3>& tips, const QuadMesh& quads, const std::vector<int>& flawed, std::vector<Vector3>& released) {
-  const std::vector<Vector3> before = released;
-  const auto is_in = [](const std::vector<Vector3>& points, const Vector3& p) { return std::find(points.begin(), points.end(), p) != points.end(); };
-  for (const int q : flawed) {
-    const Vector3 middle = middle_of(quads, q);
-    const Vector3* nearest = nullptr;
-    for (const Vector3& tip : tips)
-      if (!is_in(before, tip) && (!nearest || (tip - middle).squaredNorm() < (*nearest - middle).squaredNorm())) nearest = &tip;
-    if (nearest && !is_in(released, *nearest)) released.push_back(*nearest);
-  }
+/// Mean length of the edges at each vertex.
+std::vector<double> edge_lengths_at(const QuadMesh& mesh) {
+  std::vector<double> sum(mesh.positions.size(), 0), count(mesh.positions.size(), 0);
+  for (const auto& q : mesh.quads)
+    for (int k = 0; k < 4; ++k) {
+      const double length = (mesh.positions[q[(k + 1) & 3]] - mesh.positions[q[k]]).norm();
+      for (const int v : {q[k], q[(k + 1) & 3]}) {
+        sum[v] += length;
+        count[v] += 1;
+      }
+    }
+  for (std::size_t v = 0; v < sum.size(); ++v) sum[v] /= std::max(1.0, count[v]);
+  return sum;
 }
+
+/// Vertices of the extracted quads, which are on the surface, that the improved quads have left: limbs hardly wider than quads get better
+/// shapes where they are wider.
+std::vector<int> left_vertices(const QuadMesh& extracted, const QuadMesh& improved, const RunContext& context) {
+  constexpr double kFar = 0.5;  // in edges
+  const std::vector<SurfacePoint> nearest = nearest_on_quads(extracted.positions, improved, context);
+  const std::vector<double> length = edge_lengths_at(extracted);
+  std::vector<int> left;
+  for (std::size_t v = 0; v < nearest.size(); ++v)
+    if (nearest[v].squared_distance > kFar * kFar * length[v] * length[v]) left.push_back(static_cast<int>(v));
+  return left;
+}
+
+/// Improves the same quads again and again, with ever more of what was extracted where improving spoilt it.
+class Attempts {
+ public:
+  Attempts(const QuadMesh& extracted, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+           const SurfaceIndex& judged, const ImproveOptions& options, const RunContext& context)
+      : extracted_(extracted), input_(input), features_(features), index_(index), judged_(judged), options_(options),
+        context_(context) {}
+
+  int flawed_before() { return restoration().flawed_count(); }
+
+  Improved best() {
+    Improved best = with_fewest_flaws();
+    return_to_surface(best);
+    // Quads that tips hold may be in each other's way: where nothing else helps none are held.
+    if (best.report.flawed_after > 0 && !best.tips.empty()) {
+      released_ = best.tips;
+      Improved now = with_fewest_flaws();
+      if (now.report.flawed_after <= best.report.flawed_after) best = std::move(now);
+    }
+    return best;
+  }
+
+ private:
+  /// Only where something is spoilt does it matter what was before.
+  Restoration& restoration() {
+    if (!restoration_) restoration_.emplace(extracted_, judged_, options_.agreement, context_.threads);
+    return *restoration_;
+  }
+
+  Improved attempt() {
+    const std::vector<char> locked = restoration_ ? restoration_->locked() : std::vector<char>(extracted_.quads.size(), 0);
+    Improved now = improve_once(extracted_, locked, released_, input_, features_, index_, judged_, options_, context_);
+    now.flawed = flawed_quads(now.quads, judged_, options_.agreement, context_.threads);
+    now.report.flawed_after = static_cast<int>(now.flawed.size());
+    now.report.restored_quads = restoration_ ? restoration_->locked_count() : 0;
+    now.report.released_tips = static_cast<int>(released_.size());
+    return now;
+  }
+
+  /// Of some attempts, each with more of what was extracted around flawed quads.
+  Improved with_fewest_flaws() {
+    constexpr int kAttempts = 5;
+    restoration_.reset();
+    Improved latest = attempt(), best = latest;
+    for (int i = 1; i < kAttempts && is_worth_another_attempt(best.report.flawed_after, best.quads.quads.size()); ++i) {
+      if (!restoration().give_up_around(latest.quads, latest.flawed)) break;
+      latest = attempt();
+      if (latest.report.flawed_after < best.report.flawed_after) best = latest;
+    }
+    return best;
+  }
+
+  /// With what was extracted where quads have left the surface, as long as that brings them nearer (docs/decisions/0051).
+  void return_to_surface(Improved& best) {
+    constexpr int kRounds = 3;
+    constexpr double kFew = 0.002;  // of the vertices: not worth another attempt
+    double distance = -1;
+    for (int i = 0; i < kRounds; ++i) {
+      const std::vector<int> left = left_vertices(extracted_, best.quads, context_);
+      if (left.size() <= kFew * static_cast<double>(extracted_.positions.size()) || !restoration().give_up_at(extracted_, left))
+        return;
+      if (distance < 0) distance = mean_distance_in_edges(best.quads, index_, context_);
+      Improved now = attempt();
+      const double distance_now = mean_distance_in_edges(now.quads, index_, context_);
+      if (now.report.flawed_after > best.report.flawed_after || distance_now >= distance) return;
+      best = std::move(now);
+      distance = distance_now;
+    }
+  }
+
+  const QuadMesh& extracted_;
+  const TriangleMesh& input_;
+  const FeatureGraph& features_;
+  const SurfaceIndex& index_;
+  const SurfaceIndex& judged_;
+  const ImproveOptions& options_;
+  const RunContext& context_;
+  std::optional<Restoration> restoration_;
+  std::vector<Vector3> released_;  ///< tips that hold nothing
+};
 
 }  // namespace
 
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                             const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
-  constexpr int kAttempts = 5, kReleases = 3;
-  const SurfaceIndex& judged = whole ? *whole : index;
-  // Only where something is flawed does it matter what was before.
-  std::optional<Restoration> restoration;
-  const auto before = [&]() -> Restoration& {
-    if (!restoration) restoration.emplace(quads, judged, options.agreement, context.threads);
-    return *restoration;
-  };
-  const std::vector<char> none(quads.quads.size(), 0);
-  std::vector<Vector3> released;
-  std::vector<int> flawed;
-  const auto attempted = [&] {
-    Improved now = improve_once(quads, restoration ? restoration->locked() : none, released, input, features, index, judged, options, context);
-    flawed = flawed_quads(now.quads, judged, options.agreement, context.threads);
-    now.report.flawed_after = static_cast<int>(flawed.size());
-    now.report.restored_quads = restoration ? restoration->locked_count() : 0;
-    now.report.released_tips = static_cast<int>(released.size());
-    return now;
-  };
-  // The best of some attempts, each with more of what was extracted around flawed quads.
-  const auto best_attempt = [&] {
-    restoration.reset();
-    Improved latest = attempted(), best = latest;
-    for (int attempt = 1; attempt < kAttempts && is_worth_another_attempt(best.report.flawed_after, best.quads.quads.size()); ++attempt) {
-      if (!before().give_up_around(latest.quads, flawed)) break;
-      latest = attempted();
-      if (latest.report.flawed_after < best.report.flawed_after) best = latest;
-    }
-    return best;
-  };
-  Improved best = best_attempt();
-  // Quads that tips hold may be in each other's way: where nothing else helps none are held.
-  if (best.report.flawed_after > 0 && !best.tips.empty()) {
-    released = best.tips;
-    Improved now = best_attempt();
-    if (now.report.flawed_after < best.report.flawed_after) best = std::move(now);
-  }
+  Attempts attempts(quads, input, features, index, whole ? *whole : index, options, context);
+  Improved best = attempts.best();
   ImproveReport& report = best.report;
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;
   const bool has_slipped = area_of(best.quads) < kLeastArea * std::min(area_of(quads), input.total_area());
-  if (has_slipped || (report.flawed_after > 0 && report.flawed_after > before().flawed_count())) {
+  if (has_slipped || (report.flawed_after > 0 && report.flawed_after > attempts.flawed_before())) {
     report.connectivity_moves = 0;
-    report.flawed_after = before().flawed_count();
+    report.flawed_after = attempts.flawed_before();
     report.restored_quads = static_cast<int>(quads.quads.size());
     return report;
   }

@@ -54,4 +54,18 @@ bool Restoration::give_up_around(const QuadMesh& improved, const std::vector<int
   return any;
 }
 
+bool Restoration::give_up_at(const QuadMesh& extracted, const std::vector<int>& vertices) {
+  std::vector<char> is_given_up(extracted.positions.size(), 0);
+  for (const int v : vertices) is_given_up[v] = 1;
+  bool any = false;
+  for (std::size_t q = 0; q < extracted.quads.size(); ++q) {
+    const auto& corners = extracted.quads[q];
+    if (flawed_[q] || locked_[q] || std::none_of(corners.begin(), corners.end(), [&](int v) { return is_given_up[v] != 0; }))
+      continue;
+    locked_[q] = 1;
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace hybrid_quad

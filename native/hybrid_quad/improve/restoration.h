@@ -21,6 +21,8 @@ class Restoration {
   /// Locks extracted quads near flawed ones of the improved mesh, further around where that was tried before.
   /// \returns whether any quad was locked that was not yet
   bool give_up_around(const QuadMesh& improved, const std::vector<int>& flawed);
+  /// Locks extracted quads at these vertices of theirs, but flawed ones. \returns whether any was locked that was not yet
+  bool give_up_at(const QuadMesh& extracted, const std::vector<int>& vertices);
 
  private:
   std::vector<Vector3> centre_;
