@@ -109,7 +109,7 @@ def test_bars_thinner_than_quads_stay_bars(quads):
 
 @pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])
 def test_rings_hardly_wider_than_quads_stay_rings(tube, quads):
-    """Four quads around the tube have better shapes where it is wider, so that smoothing alone draws them together (docs/decisions/0051)."""
+    """Four quads around a tube get better shapes where they are drawn together, off its surface (docs/decisions/0051)."""
     vertices, faces = surfaces.torus(160, 40, tube)
     result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None, threads=2)
     assert_sound(result, faces)

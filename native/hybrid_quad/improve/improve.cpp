@@ -139,10 +139,11 @@ void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasur
   smoother.update_frames(true);
 }
 
+constexpr int kFew = 3;  ///< flawed quads
+
 /// Whether to improve again, with what is extracted around `flawed` quads as it is. That helps where few are; many, in
 /// many places, are taken up by splits and by other passes.
 bool is_worth_another_attempt(int flawed, std::size_t quads) {
-  constexpr int kFew = 3;
   constexpr std::size_t kQuick = 1000;
   return flawed > 0 && (flawed <= kFew || quads <= kQuick);
 }
@@ -228,7 +229,9 @@ class Attempts {
     for (int i = 1; i < kAttempts && is_worth_another_attempt(best.report.flawed_after, best.quads.quads.size()); ++i) {
       if (!restoration().give_up_around(latest.quads, latest.flawed)) break;
       latest = attempt();
-      if (latest.report.flawed_after < best.report.flawed_after) best = latest;
+      const bool is_better = latest.report.flawed_after < best.report.flawed_after;
+      if (is_better) best = latest;
+      if (!is_better && best.report.flawed_after > kFew) break;
     }
     return best;
   }
@@ -238,7 +241,7 @@ class Attempts {
     constexpr int kRounds = 3;
     constexpr double kFew = 0.002;  // of the vertices: not worth another attempt
     double distance = -1;
-    for (int i = 0; i < kRounds; ++i) {
+    for (int i = 0; i < kRounds && best.report.flawed_after <= kFew; ++i) {
       const std::vector<int> left = left_vertices(extracted_, best.quads, context_);
       if (left.size() <= kFew * static_cast<double>(extracted_.positions.size()) || !restoration().give_up_at(extracted_, left))
         return;
