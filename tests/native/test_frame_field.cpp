@@ -257,7 +257,9 @@ TEST(AcuteTips, OnlyLongTipsOfSomeWidthAreOpened) {
     for (int h = surface.mesh.outgoing(0); !surface.mesh.is_boundary(TriangleMesh::previous(h)); h = surface.mesh.rotate_ccw(h))
       around += turns[TriangleMesh::previous(h)];
     for (int h = 0; h < surface.mesh.halfedge_count(); ++h)
-      if (!surface.mesh.is_boundary(h)) EXPECT_EQ(turns[h], -turns[surface.mesh.opposite(h)]);
+      if (!surface.mesh.is_boundary(h)) {
+        EXPECT_EQ(turns[h], -turns[surface.mesh.opposite(h)]);
+      }
     return std::make_pair(around, *std::max_element(turns.begin(), turns.end()));
   };
   EXPECT_GT(opening(30, 0.05).second, 0.01);

@@ -1,16 +1,20 @@
 // Pieces, Euler characteristic and border loops: what one of them alone cannot tell apart.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "hybrid_quad/mesh/topology.h"
 #include "support/meshes.h"
 #include "support/quad_complexes.h"
 
 namespace hybrid_quad {
-namespace {
 
+// Beside the type, where GoogleTest looks for it.
 std::ostream& operator<<(std::ostream& out, const Topology& t) {
   return out << t.pieces << " pieces, Euler characteristic " << t.euler_characteristic << ", " << t.border_loops << " loops";
 }
+
+namespace {
 
 /// Both, side by side.
 TriangleMesh beside(const TriangleMesh& a, const TriangleMesh& b) {

@@ -139,13 +139,13 @@ void smooth_without_flaws(Workpiece& piece, Smoother& smoother, const FlawMeasur
   smoother.update_frames(true);
 }
 
-constexpr int kFew = 3;  ///< flawed quads
+constexpr int kFewFlawed = 3;
 
 /// Whether to improve again, with what is extracted around `flawed` quads as it is. That helps where few are; many, in
 /// many places, are taken up by splits and by other passes.
 bool is_worth_another_attempt(int flawed, std::size_t quads) {
   constexpr std::size_t kQuick = 1000;
-  return flawed > 0 && (flawed <= kFew || quads <= kQuick);
+  return flawed > 0 && (flawed <= kFewFlawed || quads <= kQuick);
 }
 
 double area_of(const QuadMesh& m) {
@@ -231,7 +231,7 @@ class Attempts {
       latest = attempt();
       const bool is_better = latest.report.flawed_after < best.report.flawed_after;
       if (is_better) best = latest;
-      if (!is_better && best.report.flawed_after > kFew) break;
+      if (!is_better && best.report.flawed_after > kFewFlawed) break;
     }
     return best;
   }
@@ -239,11 +239,11 @@ class Attempts {
   /// With what was extracted where quads have left the surface, as long as that brings them nearer (docs/decisions/0051).
   void return_to_surface(Improved& best) {
     constexpr int kRounds = 3;
-    constexpr double kFew = 0.002;  // of the vertices: not worth another attempt
+    constexpr double kWorthwhile = 0.002;  // of the vertices
     double distance = -1;
-    for (int i = 0; i < kRounds && best.report.flawed_after <= kFew; ++i) {
+    for (int i = 0; i < kRounds && best.report.flawed_after <= kFewFlawed; ++i) {
       const std::vector<int> left = left_vertices(extracted_, best.quads, context_);
-      if (left.size() <= kFew * static_cast<double>(extracted_.positions.size()) || !restoration().give_up_at(extracted_, left))
+      if (left.size() <= kWorthwhile * static_cast<double>(extracted_.positions.size()) || !restoration().give_up_at(extracted_, left))
         return;
       if (distance < 0) distance = mean_distance_in_edges(best.quads, index_, context_);
       Improved now = attempt();
