@@ -221,7 +221,8 @@ class Attempts {
     return now;
   }
 
-  /// Of some attempts, each with more of what was extracted around flawed quads.
+  /// Of some attempts, each with more of what was extracted around flawed quads: as long as that helps, and a few times anyway before tips
+  /// have to let go.
   Improved with_fewest_flaws() {
     constexpr int kAttempts = 5;
     restoration_.reset();
@@ -231,7 +232,7 @@ class Attempts {
       latest = attempt();
       const bool is_better = latest.report.flawed_after < best.report.flawed_after;
       if (is_better) best = latest;
-      if (!is_better && best.report.flawed_after > kFewFlawed) break;
+      if (!is_better && (best.tips.empty() || best.report.flawed_after > kFewFlawed)) break;
     }
     return best;
   }
