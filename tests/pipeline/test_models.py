@@ -107,6 +107,18 @@ def test_bars_thinner_than_quads_stay_bars(quads):
     assert scaled_jacobian(result.vertices, result.quads).min() > 0.1
 
 
+def test_numbers_along_curves_are_counted_where_all_features_stay():
+    """The curves of the plan are fewer than those that the quads follow in the end."""
+    vertices, faces = surfaces.grille(bars=12, bar=1.0, gap=4.0, height=2.0)
+    ends = [np.flatnonzero((vertices == corner).all(axis=1))[0] for corner in ([0, 10, 2], [0, 50, 2])]
+    result = hybrid_quad.remesh(vertices, faces, quads=500, curve_counts=[([int(v) for v in ends], 4)])
+    assert_sound(result, faces)
+    assert result.report["features_given_way"] == 0
+    (record,) = result.report["curve_counts"]
+    along = (result.vertices[:, 0] == 0) & (result.vertices[:, 2] == 2) & (np.abs(result.vertices[:, 1] - 30) <= 20)
+    assert record["got"] == along.sum() - 1
+
+
 @pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])
 def test_rings_hardly_wider_than_quads_stay_rings(tube, quads):
     """Four quads around a tube get better shapes where they are drawn together, off its surface (docs/decisions/0051)."""

@@ -60,16 +60,19 @@ void append(RemeshResult& result, const QuadMesh& m, const ComponentResult& comp
   r.warnings.insert(r.warnings.end(), component.warnings.begin(), component.warnings.end());
 }
 
-/// The component's quads with feature edges by the curves of the plan, which a ring may have joined.
+/// The component's quads with feature edges by the curves of the plan, which a ring may have joined; without edges on features that gave way
+/// in the plan and are kept all the same (ComponentPlan::with_all).
 QuadMesh on_curves_of(const ComponentPlan& plan, const ComponentResult& component) {
   QuadMesh mesh = component.mesh;
   std::vector<int> planned(component.features.curves.size(), -1);
   for (int h = plan.mesh.halfedge_count() - 1; h >= 0; --h)
-    if (component.features.is_feature(h)) {
+    if (component.features.is_feature(h) && plan.features.is_feature(h)) {
       int& curve = planned[component.features.halfedge_curve[h]];
       curve = curve < 0 ? plan.features.halfedge_curve[h] : std::min(curve, plan.features.halfedge_curve[h]);
     }
   for (QuadMesh::FeatureEdge& e : mesh.feature_edges) e.curve = planned[e.curve];
+  auto& edges = mesh.feature_edges;
+  edges.erase(std::remove_if(edges.begin(), edges.end(), [](const QuadMesh::FeatureEdge& e) { return e.curve < 0; }), edges.end());
   return mesh;
 }
 
