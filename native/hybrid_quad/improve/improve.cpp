@@ -217,7 +217,7 @@ class Attempts {
     now.flawed = flawed_quads(now.quads, judged_, options_.agreement, context_.threads);
     now.report.flawed_after = static_cast<int>(now.flawed.size());
     now.report.restored_quads = restoration_ ? restoration_->locked_count() : 0;
-    now.report.released_tips = static_cast<int>(released_.size());
+    now.report.released_tips = released_.empty() ? 0 : 1;
     return now;
   }
 
