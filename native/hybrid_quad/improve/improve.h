@@ -36,8 +36,8 @@ struct ImproveReport {
   int flawed_after = 0;  ///< flawed_quads
   int mended = 0;                  ///< changes that only flawed quads called for
   int placed = 0;  ///< places around quads of poor shape that were searched anew with success
-  int released_tips = 0;           ///< 1 where tips hold nothing, as quads they held came out flawed
-  int restored_quads = 0;          ///< quads left as they were extracted, where improving them brought flaws or took them off the surface
+  int released_tips = 0;  ///< 1 where tips hold nothing, as quads they held came out flawed
+  int restored_quads = 0;  ///< quads left as they were extracted, where improving them brought flaws or took them off the surface
 };
 
 /// Makes the quads good without leaving the surface: connectivity moves that lower the valence cost, then smoothing and

@@ -96,8 +96,8 @@ struct RepairRecord {
   int ended_searches = 0;  ///< for better shapes, with quads left, as each look at the surface takes long
   int opened_flat_quads = 0;     ///< quads without area to which a vertex moved by a hair gave one
   int split_triangles = 0;  ///< of components that are made of their own triangles, as all else left flawed quads
-  int released_tips = 0;         ///< times that tips held nothing, as quads they held came out flawed
-  int restored_quads = 0;        ///< quads left as they were extracted, where improving them brought flaws or took them off the surface
+  int released_tips = 0;  ///< times that tips held nothing, as quads they held came out flawed
+  int restored_quads = 0;  ///< quads left as they were extracted, where improving them brought flaws or took them off the surface
 
   RepairRecord& operator+=(const RepairRecord& other);
 };
