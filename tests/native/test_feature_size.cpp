@@ -11,7 +11,8 @@ namespace {
 std::vector<double> lengths(const TriangleMesh& mesh, double length) {
   const RunContext context;
   const FeatureGraph features = detect_features(mesh, FeatureOptions{}, context);
-  return feature_sized_lengths(SurfaceIndex(mesh, {}), features, length, FeatureSizeOptions{}, context);
+  const SurfaceIndex index(mesh, {});
+  return feature_sized_lengths(index, features, length, thin_places(index, length, context), FeatureSizeOptions{}, context);
 }
 
 TEST(FeatureSize, LeavesRoomySurfacesAlone) {

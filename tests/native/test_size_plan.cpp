@@ -237,6 +237,43 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
   EXPECT_FALSE(has_another_plan);
 }
 
+TEST(SizePlan, ThinPartsGetRoomForFourQuadsAround) {
+  // A sphere and on its top a rod.
+  constexpr double kRadius = 0.05, kLength = 0.8, kArc = 3.1;
+  const TriangleMesh tube = test::capped_cylinder(24, 160, 1, 1);
+  std::vector<Vector3> positions = tube.positions();
+  for (Vector3& p : positions) {
+    const double s = 0.04 + p.z() * (kArc + kLength - 0.04), beyond = std::max(0.0, s - kArc);
+    const double width = s < kArc ? std::max(kRadius, std::sin(s)) : kRadius;
+    p = Vector3(width * p.x(), width * p.y(), (s < kArc ? -std::cos(s) : -std::cos(kArc)) + beyond);
+  }
+  const TriangleMesh mesh(std::move(positions), tube.faces());
+  RemeshOptions options;
+  options.use_sharp_angle = false;
+  const auto plan_for = [&](double quads) {
+    std::vector<ComponentPlan> plans{
+        plan_component(mesh, std::sqrt(mesh.total_area() / quads), {}, {}, Wishes{}, options, RunContext{})};
+    balance_plans(plans, quads, RunContext{});
+    return plans[0];
+  };
+  const auto longest_on_rod = [](const ComponentPlan& plan) {
+    double longest = 0;
+    for (int v = 0; v < plan.mesh.vertex_count(); ++v)
+      if (plan.mesh.position(v).z() > 1.3 && plan.mesh.position(v).z() < 1.7) longest = std::max(longest, plan.target[v]);
+    return longest;
+  };
+  const double four_around = 2 * M_PI * kRadius / 4;
+  const ComponentPlan plan = plan_for(130), roomy = with_room_for_thin_parts(plan, RunContext{});
+  EXPECT_GT(longest_on_rod(plan), 1.2 * four_around);
+  EXPECT_LT(longest_on_rod(roomy), 1.2 * four_around);
+  EXPECT_NEAR(roomy.quads, plan.quads, 1e-6 * plan.quads) << "others are longer for it";
+  EXPECT_GT(*std::max_element(roomy.target.begin(), roomy.target.end()), *std::max_element(plan.target.begin(), plan.target.end()));
+  const ComponentPlan fine = plan_for(5000);
+  EXPECT_EQ(with_room_for_thin_parts(fine, RunContext{}).target, fine.target) << "there is room";
+  const ComponentPlan tiny = plan_for(20);
+  EXPECT_EQ(with_room_for_thin_parts(tiny, RunContext{}).target, tiny.target) << "it would take most of the quads";
+}
+
 TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {
   // The rim of a plate that is a hundredth of an edge length thick, and of one that is not.
   const auto curves_of = [](double thickness, bool is_marked) {

@@ -119,6 +119,19 @@ def test_numbers_along_curves_are_counted_where_all_features_stay():
     assert record["got"] == along.sum() - 1
 
 
+@pytest.mark.parametrize(("length", "radius", "quads"), [(1.2, 0.06, 120), (1.2, 0.04, 200), (2, 0.05, 200), (0.8, 0.05, 300)])
+def test_horns_thinner_than_quads_stay_horns(length, radius, quads):
+    """Sizes gave way to fewer irregular vertices, two quads went around, and nothing was left (docs/decisions/0052)."""
+    vertices, faces = surfaces.horned_sphere(length, radius)
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None, threads=2)
+    assert_sound(result, faces)
+    assert abs(len(result.quads) / quads - 1) < 0.05
+    usual_length = np.sqrt((4 + 1.6 * radius * length) * np.pi / quads)
+    assert 2 * np.pi * radius < 2 * usual_length, "or there is room for all"
+    assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < usual_length
+    assert scaled_jacobian(result.vertices, result.quads).mean() > 0.9
+
+
 @pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])
 def test_rings_hardly_wider_than_quads_stay_rings(tube, quads):
     """Four quads around a tube get better shapes where they are drawn together, off its surface (docs/decisions/0051)."""

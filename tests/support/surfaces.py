@@ -59,6 +59,25 @@ def sphere(n: int = 8) -> tuple[np.ndarray, np.ndarray]:
     return vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces
 
 
+def horned_sphere(length: float, radius: float, around: int = 32, along: int = 140) -> tuple[np.ndarray, np.ndarray]:
+    """Unit sphere, of genus 0, with a round horn on its top that gets thinner from `radius` to two fifths of it."""
+    arc = np.pi - np.arcsin(radius)
+    s = np.arange(1, along) / along * (arc + length)
+    beyond = np.maximum(s - arc, 0)
+    width = np.where(s < arc, np.sin(s), radius * (1 - 0.6 * beyond / length))
+    height = np.where(s < arc, -np.cos(s), np.cos(arc - np.pi) + beyond)
+    angle = 2 * np.pi * np.arange(around) / around
+    rings = np.stack([np.outer(width, np.cos(angle)), np.outer(width, np.sin(angle)), np.outer(height, np.ones(around))], -1)
+    vertices = np.concatenate([[[0, 0, -1]], rings.reshape(-1, 3), [[0, 0, height[-1]]]])
+    i, j = np.divmod(np.arange((along - 2) * around), around)
+    this, right = 1 + i * around + j, 1 + i * around + (j + 1) % around
+    side = _triangles_of(np.column_stack([this, right, right + around, this + around]))
+    ring, top = np.arange(around), len(vertices) - 1
+    foot = np.column_stack([np.zeros(around, int), 1 + (ring + 1) % around, 1 + ring])
+    cap = np.column_stack([top - around + ring, top - around + (ring + 1) % around, np.full(around, top)])
+    return vertices, np.concatenate([foot, side, cap])
+
+
 def quad_box(n: int = 4) -> tuple[np.ndarray, np.ndarray]:
     """The unit cube's surface as n x n quads a side."""
     vertices: dict[tuple[int, int, int], int] = {}

@@ -10,6 +10,7 @@
 #include "hybrid_quad/pipeline/common_progress.h"
 #include "hybrid_quad/pipeline/component_pass.h"
 #include "hybrid_quad/pipeline/fewest_quads.h"
+#include "hybrid_quad/pipeline/first_pass.h"
 #include "hybrid_quad/pipeline/last_means.h"
 #include "hybrid_quad/pipeline/missed_loops.h"
 #include "hybrid_quad/pipeline/settle_count.h"
@@ -82,91 +83,6 @@ Extractable extractable(const ComponentPlan& planned, double count) {
   out.are_few = planned.guides.empty() && count < least && planned.quads < least;
   if (out.are_few && !has_inner_features(planned)) scale_plan(out.rough.emplace(planned), least / planned.quads);
   return out;
-}
-
-double mean_shape(const QuadMesh& mesh) {
-  double sum = 0;
-  for (const auto& q : mesh.quads)
-    sum += scaled_jacobian(mesh.positions[q[0]], mesh.positions[q[1]], mesh.positions[q[2]], mesh.positions[q[3]]);
-  return sum / static_cast<double>(mesh.quads.size());
-}
-
-/// A first pass and the plan that it follows.
-struct FirstPass {
-  ComponentPlan plan;
-  ComponentResult result;
-  double distance = 0;  ///< mean_distance_in_edges()
-  std::optional<InternalError> error;  ///< instead of a result
-
-  /// A hundredth of an edge off the surface weighs as much as this many hundredths of the scaled Jacobian.
-  static constexpr double kDistanceInShapes = 4;
-  double score() const { return mean_shape(result.mesh) - kDistanceInShapes * distance; }
-  bool has_far_too_many() const { return static_cast<double>(result.mesh.quads.size()) > 1.1 * plan.quads; }
-};
-
-/// Plans that differ in how many features by angle give way, the one with the fewest left first; the plan itself alone where hardly any are in
-/// the way of others. \param very_many  receives whether the first goes without so many that quads are nearly always better off
-std::vector<ComponentPlan> plans_to_try(const ComponentPlan& planned, PlaneSet mirror_planes, bool& very_many,
-                                        const RunContext& context) {
-  constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
-  constexpr double kVeryMany = 0.12, kFewestOfThem = 30;
-  std::vector<ComponentPlan> plans;
-  ComponentPlan roomy = with_room_for_shapes(planned, mirror_planes, context);
-  const int crowding = roomy.given_way - planned.given_way;
-  very_many = crowding > std::max(kFewestOfThem, kVeryMany * planned.quads);
-  if (crowding >= std::max(kFewest, kWorthATrial * planned.quads)) plans.push_back(std::move(roomy));
-  plans.push_back(planned);
-  if (planned.with_all) {
-    plans.push_back(*planned.with_all);
-    scale_plan(plans.back(), planned.quads / plans.back().quads);
-  }
-  return plans;
-}
-
-/// Where features by angle are shorter than quads, passes with all and with fewer of them tell whether quads are better off
-/// (docs/decisions/0043). Where very many give way, only one without these is made, unless its quads have left the surface.
-/// \param broken  gets the promises that broke
-std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
-                                             const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
-                                             const RunContext& context, ComponentResult& broken) {
-  constexpr double kBetter = 0.02;  // than with more features
-  constexpr double kNear = 0.02;  // edges
-  if (!options.improve || !planned.guides.empty()) return std::nullopt;
-  bool very_many = false;
-  std::vector<FirstPass> passes;
-  for (ComponentPlan& plan : plans_to_try(planned, options.symmetry.planes, very_many, context))
-    passes.push_back({std::move(plan), {}, 0, {}});
-  const int count = static_cast<int>(passes.size());
-  if (count == 1) return std::nullopt;
-  const auto make = [&](FirstPass& pass, StageClock& its_clock, const RunContext& its_context) {
-    PassSettings settings = kSettings[0];
-    settings.is_doubtful = pass.plan.given_way < planned.given_way;
-    try {
-      pass.result = run_pass(pass.plan, whole, wishes, guides, options, settings, its_clock, its_context);
-      pass.distance = mean_distance_in_edges(pass.result.mesh, *planned.index, its_context.in_stage("quality", 1, 1));
-    } catch (const InternalError& error) {
-      pass.error = error;
-    }
-  };
-  int made = 0;
-  if (very_many) {
-    make(passes[0], clock, context.in_stage(context.stage, 0, 0.9 / count));
-    if (!passes[0].error && passes[0].distance <= kNear) return std::move(passes[0]);
-    made = 1;
-  }
-  std::vector<StageClock> clocks(count - made);
-  CommonProgress progress(context, std::vector<double>(count - made, 1.0 / (count - made)), 0.9 * made / count, 0.9);
-  side_by_side(count - made, context,
-               [&](int i, const RunContext& each) { make(passes[made + i], clocks[i], progress.context_of(i, each)); });
-  for (const StageClock& one : clocks) clock.add(one);
-  const FirstPass* best = nullptr;
-  for (const FirstPass& pass : passes) {
-    if (pass.error)
-      record_broken_promise(*pass.error, broken.repairs, broken.warnings);
-    else if (!best || (pass.score() >= best->score() - kBetter && !pass.has_far_too_many()))
-      best = &pass;
-  }
-  return best ? std::optional(*best) : std::nullopt;
 }
 
 /// Passes until one has no flawed quads; the best of them. \param first  the first of them, where it was made already

@@ -101,17 +101,23 @@ void shorten_for_counts(ComponentPlan& plan, const RunContext& context) {
   grade_lengths(plan.mesh, longest, plan.target, FeatureSizeOptions{}.growth, context);
 }
 
+void plan_lengths_again(ComponentPlan& plan, const RunContext& context) {
+  FeatureSizeOptions feature_size;
+  feature_size.least_ratio = plan.least_ratio;
+  feature_size.thin_ratio = plan.thin_ratio;
+  plan.target = asked_lengths(*plan.index, plan.features, plan.length, plan.density, *plan.thin_places, feature_size, context);
+  shorten_for_counts(plan, context);
+  plan.needed = plan.target;
+  plan.quads = quads_for_lengths(plan.mesh, plan.target);
+}
+
 /// Everything about the lengths of edges that the features decide.
 void plan_lengths(ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
   plan.chains = plan_curve_counts(plan.mesh, plan.asked_chains, plan.features);
   plan.curve_planes = seam_planes(plan.mesh, plan.features, mirror_planes);
   plan.index = std::make_shared<const SurfaceIndex>(plan.mesh, plan.features.face_region, context);
-  FeatureSizeOptions feature_size;
-  feature_size.least_ratio = plan.least_ratio;
-  plan.target = asked_lengths(*plan.index, plan.features, plan.length, plan.density, feature_size, context);
-  shorten_for_counts(plan, context);
-  plan.needed = plan.target;
-  plan.quads = quads_for_lengths(plan.mesh, plan.target);
+  if (!plan.thin_places) plan.thin_places = thin_places(*plan.index, longest_asked(plan.length, plan.density), context);
+  plan_lengths_again(plan, context);
 }
 
 /// The halves of a sliver are as wide, but not as long, and may seem to be none: they have the normal of the whole one.
@@ -205,7 +211,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < plan.density.size(); ++v) plan.unlimited[v] = plan.length / plan.density[v];
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
-  plan.least_ratio = plan.length < kTiny * length ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
+  plan.least_ratio = plan.thin_ratio = plan.length < kTiny * length ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
   plan_lengths(plan, options.symmetry.planes, context);
   return plan;
 }
@@ -237,6 +243,25 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
   plan_lengths(with, mirror_planes, context);
   scale_plan(with, plan.quads / with.quads);
   return with;
+}
+
+ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, const RunContext& context) {
+  constexpr double kRatios[] = {0.13, 0.2, 0.25}, kMostQuads = 1.5;
+  const auto is_cramped = [&](const ThinPlace& place) { return place.length < plan.thin_ratio * plan.length; };
+  if (std::none_of(plan.thin_places->begin(), plan.thin_places->end(), is_cramped)) return plan;
+  const double most = kMostQuads * quads_for_lengths(plan.mesh, plan.unlimited);
+  std::vector<ComponentPlan> finer{plan};
+  finer[0].part = -1;
+  for (const double ratio : kRatios) {
+    if (ratio >= plan.thin_ratio) break;
+    finer[0].thin_ratio = ratio;
+    plan_lengths_again(finer[0], context);
+    if (finer[0].quads > most) continue;
+    balance_plans(finer, plan.quads, context);
+    scale_plan(finer[0], plan.quads / finer[0].quads);
+    return std::move(finer[0]);
+  }
+  return plan;
 }
 
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {

@@ -32,7 +32,8 @@ struct ComponentPlan {
   std::vector<int> corners;     ///< vertices that are corners where a feature passes
   std::vector<CountedChain> asked_chains;  ///< edges of that mesh that are to get certain numbers of quads
   std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
-  double least_ratio = 0;       ///< see FeatureSizeOptions
+  double least_ratio = 0, thin_ratio = 0;  ///< see FeatureSizeOptions
+  std::optional<std::vector<ThinPlace>> thin_places;  ///< once they have been looked for
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
@@ -67,6 +68,10 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
 
 /// The plan for as many quads with more vertices as corners, where a feature passes.
 ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes, const RunContext& context);
+
+/// The plan for as many quads with edges as short as four quads around thin tubes and tips need, or nearly, if that takes no more than
+/// half as many quads again as without thin parts; other edges get longer for it (docs/decisions/0052). Else the same plan.
+ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, const RunContext& context);
 
 /// The plan for as many quads with fewer features by angle, where these are cramped: more than a few are shorter than quads, or some
 /// gave way to the number already. Else the same plan.

@@ -101,16 +101,21 @@ double area_by_density(const TriangleMesh& mesh, const std::vector<double>& dens
   return quads_for_lengths(mesh, length);
 }
 
+double longest_asked(double length, const std::vector<double>& density) {
+  return density.empty() ? length : length / *std::min_element(density.begin(), density.end());
+}
+
 std::vector<double> asked_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
-                                  const std::vector<double>& density, const FeatureSizeOptions& options,
-                                  const RunContext& context) {
-  if (density.empty()) return feature_sized_lengths(index, features, length, options, context);
+                                  const std::vector<double>& density, const std::vector<ThinPlace>& thin,
+                                  const FeatureSizeOptions& options, const RunContext& context) {
+  if (density.empty()) return feature_sized_lengths(index, features, length, thin, options, context);
   const TriangleMesh& mesh = index.mesh();
   // Features make room as they would among quads of the longest edges; what is shorter already has its room.
-  const double longest = length / *std::min_element(density.begin(), density.end());
+  const double longest = longest_asked(length, density);
   FeatureSizeOptions relative = options;
   relative.least_ratio *= length / longest;
-  std::vector<double> target = feature_sized_lengths(index, features, longest, relative, context);
+  relative.thin_ratio *= length / longest;
+  std::vector<double> target = feature_sized_lengths(index, features, longest, thin, relative, context);
   for (int v = 0; v < mesh.vertex_count(); ++v) target[v] = std::min(target[v], length / density[v]);
   return target;
 }

@@ -26,9 +26,13 @@ void grade_density(const TriangleMesh& mesh, double length, double growth, std::
 /// Integral of density^2: the area at density 1 that asks for as many quads. \param density #V; empty: 1 everywhere
 double area_by_density(const TriangleMesh& mesh, const std::vector<double>& density);
 
+/// The longest length / density. \param density  #V, or empty: 1
+double longest_asked(double length, const std::vector<double>& density);
+
 /// feature_sized_lengths() around lengths that vary already: length / density. \param density  #V, or empty: 1
+/// \param thin  thin_places() for the longest of them
 std::vector<double> asked_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
-                                  const std::vector<double>& density, const FeatureSizeOptions& options,
-                                  const RunContext& context);
+                                  const std::vector<double>& density, const std::vector<ThinPlace>& thin,
+                                  const FeatureSizeOptions& options, const RunContext& context);
 
 }  // namespace hybrid_quad

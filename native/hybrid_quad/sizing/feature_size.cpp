@@ -6,7 +6,6 @@
 #include <queue>
 
 #include "hybrid_quad/sizing/bent_curves.h"
-#include "hybrid_quad/sizing/thin_parts.h"
 
 namespace hybrid_quad {
 
@@ -71,7 +70,8 @@ double length_of(const TriangleMesh& mesh, const FeatureCurve& curve) {
 }  // namespace
 
 std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
-                                          const FeatureSizeOptions& options, const RunContext& context) {
+                                          const std::vector<ThinPlace>& thin, const FeatureSizeOptions& options,
+                                          const RunContext& context) {
   const TriangleMesh& mesh = index.mesh();
   std::vector<double> target(mesh.vertex_count(), length);
   const double least = options.least_ratio * length;
@@ -104,7 +104,8 @@ std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const Featu
     limit(b, gap);
   });
   context.checkpoint(0.5);
-  limit_lengths_of_thin_parts(index, length, options.least_ratio, target, context);
+  for (const ThinPlace& place : thin)
+    target[place.vertex] = std::min(target[place.vertex], std::max(place.length, options.thin_ratio * length));
   grade_lengths(mesh, length, target, options.growth, context);
   return target;
 }

@@ -2,6 +2,7 @@
 
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/mesh/surface_index.h"
+#include "hybrid_quad/sizing/thin_parts.h"
 
 namespace hybrid_quad {
 
@@ -13,6 +14,7 @@ struct LengthLimit {
 
 struct FeatureSizeOptions {
   double least_ratio = 0.35;   ///< shortest length over the asked one
+  double thin_ratio = 0.35;    ///< the same in thin tubes and tips
   double growth = 0.5;         ///< how much the length may grow over a unit of distance
 };
 
@@ -21,9 +23,11 @@ struct FeatureSizeOptions {
 /// within an edge it follows the bend; thin tubes and tips get at least four quads around. The length grows back with the distance.
 /// \param index  of the surface
 /// \param length  asked quad edge length (scene units)
+/// \param thin  thin_places() for that length
 /// \returns #V of the mesh
 std::vector<double> feature_sized_lengths(const SurfaceIndex& index, const FeatureGraph& features, double length,
-                                          const FeatureSizeOptions& options, const RunContext& context);
+                                          const std::vector<ThinPlace>& thin, const FeatureSizeOptions& options,
+                                          const RunContext& context);
 
 /// Shortens lengths (#V) that are longer than they may be somewhere near; grade_lengths spreads that.
 void limit_lengths(const SurfaceIndex& index, const std::vector<LengthLimit>& limits, std::vector<double>& length);

@@ -71,8 +71,7 @@ Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
 
 }  // namespace
 
-void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, double least_ratio, std::vector<double>& target,
-                                 const RunContext& context) {
+std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, const RunContext& context) {
   constexpr double kProbesPerQuad = 4, kLeastProbes = 1000;
   const TriangleMesh& mesh = index.mesh();
   const double quads = mesh.total_area() / (length * length);
@@ -80,18 +79,22 @@ void limit_lengths_of_thin_parts(const SurfaceIndex& index, double length, doubl
   const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / probes));
   const double enough = 2 * length / kPi;  // a circle of this radius has room for four quads
   const ThicknessProbe probe(index, 0.9 * length);
-  const auto limit_at = [&](int v) {
-    if (mesh.outgoing(v) < 0) return;
+  const auto radius_at = [&](int v) {
+    if (mesh.outgoing(v) < 0) return enough;
     const Vector3 normal = vertex_normal(mesh, v);
-    if (!(normal.squaredNorm() > 0.5)) return;
+    if (!(normal.squaredNorm() > 0.5)) return enough;
     const double r = probe.radius(mesh.position(v), normal, enough);
-    if (r >= enough || !probe.is_narrow(mesh.position(v) - r * normal, normal, mesh.edge_vector(mesh.outgoing(v)))) return;
-    target[v] = std::min(target[v], std::max(r * kPi / 2, least_ratio * length));
+    const bool is_thin = r < enough && probe.is_narrow(mesh.position(v) - r * normal, normal, mesh.edge_vector(mesh.outgoing(v)));
+    return is_thin ? r : enough;
   };
-  const int last = (mesh.vertex_count() - 1) / stride;
-  parallel_chunks(last + 1, context, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) limit_at(i * stride);
+  std::vector<double> radius((mesh.vertex_count() - 1) / stride + 1);
+  parallel_chunks(static_cast<int>(radius.size()), context, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) radius[i] = radius_at(i * stride);
   });
+  std::vector<ThinPlace> places;
+  for (std::size_t i = 0; i < radius.size(); ++i)
+    if (radius[i] < enough) places.push_back({static_cast<int>(i) * stride, radius[i] * kPi / 2});
+  return places;
 }
 
 }  // namespace hybrid_quad

@@ -1,0 +1,173 @@
+#include "hybrid_quad/pipeline/first_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hybrid_quad/base/parallel.h"
+#include "hybrid_quad/pipeline/broken_promises.h"
+#include "hybrid_quad/pipeline/common_progress.h"
+#include "hybrid_quad/pipeline/component_pass.h"
+
+namespace hybrid_quad {
+
+namespace {
+
+double mean_shape(const QuadMesh& mesh) {
+  double sum = 0;
+  for (const auto& q : mesh.quads)
+    sum += scaled_jacobian(mesh.positions[q[0]], mesh.positions[q[1]], mesh.positions[q[2]], mesh.positions[q[3]]);
+  return sum / static_cast<double>(mesh.quads.size());
+}
+
+constexpr double kFailed = std::numeric_limits<double>::infinity();  ///< a distance
+
+struct Trial {
+  explicit Trial(ComponentPlan plan) : pass{std::move(plan), {}} {}
+
+  FirstPass pass;
+  double distance = kFailed;  ///< mean_distance_in_edges()
+  std::optional<InternalError> error;  ///< instead of a result
+  double curl_weight = PassSettings{}.curl_weight;
+  double most_quads = 1.1;  ///< times the number
+
+  /// A hundredth of an edge off the surface weighs as much as this many hundredths of the scaled Jacobian.
+  static constexpr double kDistanceInShapes = 4;
+  double score() const { return mean_shape(pass.result.mesh) - kDistanceInShapes * distance; }
+  bool has_far_too_many() const { return static_cast<double>(pass.result.mesh.quads.size()) > most_quads * pass.plan.quads; }
+};
+
+/// Plans that differ in how many features by angle give way, the one with the fewest left first; the plan itself alone where hardly any are in
+/// the way of others. \param very_many  receives whether the first goes without so many that quads are nearly always better off
+std::vector<ComponentPlan> plans_to_try(const ComponentPlan& planned, PlaneSet mirror_planes, bool& very_many,
+                                        const RunContext& context) {
+  constexpr double kWorthATrial = 0.01, kFewest = 5;  // curves that give way, of the number of quads, and at least
+  constexpr double kVeryMany = 0.12, kFewestOfThem = 30;
+  std::vector<ComponentPlan> plans;
+  ComponentPlan roomy = with_room_for_shapes(planned, mirror_planes, context);
+  const int crowding = roomy.given_way - planned.given_way;
+  very_many = crowding > std::max(kFewestOfThem, kVeryMany * planned.quads);
+  if (crowding >= std::max(kFewest, kWorthATrial * planned.quads)) plans.push_back(std::move(roomy));
+  plans.push_back(planned);
+  if (planned.with_all) {
+    plans.push_back(*planned.with_all);
+    scale_plan(plans.back(), planned.quads / plans.back().quads);
+  }
+  return plans;
+}
+
+/// How far the surface is from the quads where it is farthest, in edge lengths: at some of its vertices, several for a quad.
+double largest_distance_in_edges(const TriangleMesh& surface, const QuadMesh& quads, const RunContext& context) {
+  constexpr std::size_t kPerQuad = 8, kLeast = 4000;
+  const std::size_t wanted = std::max(kLeast, kPerQuad * quads.quads.size());
+  const int stride = std::max(1, static_cast<int>(surface.vertex_count() / wanted));
+  std::vector<Vector3> places;
+  for (int v = 0; v < surface.vertex_count(); v += stride) places.push_back(surface.position(v));
+  double squared = 0;
+  for (const SurfacePoint& nearest : nearest_on_quads(places, quads, context)) squared = std::max(squared, nearest.squared_distance);
+  return std::sqrt(squared) / mean_edge_length(quads);
+}
+
+class FirstPasses {
+ public:
+  FirstPasses(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
+              const RemeshOptions& options, StageClock& clock, ComponentResult& broken)
+      : planned_(planned), whole_(whole), wishes_(wishes), guides_(guides), options_(options), clock_(clock), broken_(broken) {}
+
+  /// Where very many features give way, only one pass without these is made, unless its quads have left the surface.
+  std::optional<Trial> with_fewer_or_all_features(const RunContext& context) {
+    constexpr double kNear = 0.02;  // edges
+    constexpr double kBetter = 0.02;  // has to be what goes without more features
+    bool very_many = false;
+    std::vector<Trial> trials;
+    for (ComponentPlan& plan : plans_to_try(planned_, options_.symmetry.planes, very_many, context))
+      trials.emplace_back(std::move(plan));
+    const int count = static_cast<int>(trials.size());
+    if (count == 1) return std::nullopt;
+    int made = 0;
+    if (very_many) {
+      make(trials[0], clock_, context.in_stage(context.stage, 0, 1.0 / count));
+      if (trials[0].distance <= kNear) return std::move(trials[0]);
+      made = 1;
+    }
+    std::vector<StageClock> clocks(count - made);
+    CommonProgress progress(context, std::vector<double>(count - made, 1.0 / (count - made)), static_cast<double>(made) / count, 1);
+    side_by_side(count - made, context,
+                 [&](int i, const RunContext& each) { make(trials[made + i], clocks[i], progress.context_of(i, each)); });
+    for (const StageClock& one : clocks) clock_.add(one);
+    return best_of(trials, kBetter);
+  }
+
+  /// \param first  the pass so far, if there is one
+  /// \returns the better one of it and another, where there are thin parts and quads end short of the surface (docs/decisions/0052)
+  std::optional<Trial> with_room_for_thin_parts(std::optional<Trial> first, const RunContext& context) {
+    constexpr double kFar = 1.25, kNearer = 0.8;  // edges, and a part of what it was
+    constexpr double kFirm = 1e-3;  // else sizes give way to integrable frames, and two quads go around where four were planned
+    constexpr double kMany = 1.3;   // which can be settled; a lost limb can't
+    if (planned_.thin_places->empty()) return first;
+    if (!first) {
+      first.emplace(planned_);
+      make(*first, clock_, context.in_stage(context.stage, 0, 0.5));
+    }
+    const RunContext measuring = context.in_stage("quality", 0.5, 0.5);
+    const double farthest = first->error ? kFailed : largest_distance_in_edges(planned_.mesh, first->pass.result.mesh, measuring);
+    if (farthest <= kFar) return first;
+    Trial second(hybrid_quad::with_room_for_thin_parts(first->pass.plan, context));
+    second.curl_weight = kFirm;
+    second.most_quads = kMany;
+    make(second, clock_, context.in_stage(context.stage, 0.5, 1));
+    if (!second.error && largest_distance_in_edges(planned_.mesh, second.pass.result.mesh, measuring) > kNearer * farthest) return first;
+    std::vector<Trial> trials{std::move(*first), std::move(second)};
+    return best_of(trials, 0);
+  }
+
+ private:
+  void make(Trial& trial, StageClock& clock, const RunContext& context) const {
+    PassSettings settings;
+    settings.curl_weight = trial.curl_weight;
+    settings.is_doubtful = trial.pass.plan.given_way < planned_.given_way;
+    try {
+      trial.pass.result = run_pass(trial.pass.plan, whole_, wishes_, guides_, options_, settings, clock, context);
+      trial.distance = mean_distance_in_edges(trial.pass.result.mesh, *planned_.index, context.in_stage("quality", 1, 1));
+    } catch (const InternalError& error) {
+      trial.error = error;
+      trial.distance = kFailed;
+    }
+  }
+
+  /// \param allowance  of the score, for each that comes later
+  std::optional<Trial> best_of(std::vector<Trial>& trials, double allowance) {
+    Trial* best = nullptr;
+    for (Trial& trial : trials) {
+      if (trial.error)
+        record_broken_promise(*trial.error, broken_.repairs, broken_.warnings);
+      else if (!best || (trial.score() >= best->score() - allowance && !trial.has_far_too_many()))
+        best = &trial;
+    }
+    return best ? std::optional(std::move(*best)) : std::nullopt;
+  }
+
+  const ComponentPlan& planned_;
+  const SurfaceIndex& whole_;
+  const Wishes& wishes_;
+  const HardGuides& guides_;
+  const RemeshOptions& options_;
+  StageClock& clock_;
+  ComponentResult& broken_;
+};
+
+}  // namespace
+
+std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
+                                             const HardGuides& guides, const RemeshOptions& options, StageClock& clock,
+                                             const RunContext& context, ComponentResult& broken) {
+  if (!options.improve || !planned.guides.empty()) return std::nullopt;
+  FirstPasses passes(planned, whole, wishes, guides, options, clock, broken);
+  std::optional<Trial> best = passes.with_fewer_or_all_features(context.in_stage(context.stage, 0, 0.8));
+  const bool is_by_count = !(options.edge_length > 0 || options.chord_error > 0);
+  if (is_by_count) best = passes.with_room_for_thin_parts(std::move(best), context.in_stage(context.stage, best ? 0.8 : 0, 0.9));
+  return best ? std::optional(std::move(best->pass)) : std::nullopt;
+}
+
+}  // namespace hybrid_quad
