@@ -119,7 +119,9 @@ def test_numbers_along_curves_are_counted_where_all_features_stay():
     assert record["got"] == along.sum() - 1
 
 
-@pytest.mark.parametrize(("length", "radius", "quads"), [(1.2, 0.06, 120), (1.2, 0.04, 200), (2, 0.05, 200), (0.8, 0.05, 300)])
+@pytest.mark.parametrize(
+    ("length", "radius", "quads"), [(1.2, 0.06, 120), (1.2, 0.04, 200), (2, 0.05, 200), (0.8, 0.05, 300)]
+)
 def test_horns_thinner_than_quads_stay_horns(length, radius, quads):
     """Sizes gave way to fewer irregular vertices, two quads went around, and nothing was left (docs/decisions/0052)."""
     vertices, faces = surfaces.horned_sphere(length, radius)

@@ -67,7 +67,9 @@ def horned_sphere(length: float, radius: float, around: int = 32, along: int = 1
     width = np.where(s < arc, np.sin(s), radius * (1 - 0.6 * beyond / length))
     height = np.where(s < arc, -np.cos(s), np.cos(arc - np.pi) + beyond)
     angle = 2 * np.pi * np.arange(around) / around
-    rings = np.stack([np.outer(width, np.cos(angle)), np.outer(width, np.sin(angle)), np.outer(height, np.ones(around))], -1)
+    rings = np.stack(
+        [np.outer(width, np.cos(angle)), np.outer(width, np.sin(angle)), np.outer(height, np.ones(around))], -1
+    )
     vertices = np.concatenate([[[0, 0, -1]], rings.reshape(-1, 3), [[0, 0, height[-1]]]])
     i, j = np.divmod(np.arange((along - 2) * around), around)
     this, right = 1 + i * around + j, 1 + i * around + (j + 1) % around

@@ -91,38 +91,60 @@ class FirstPasses {
       if (trials[0].distance <= kNear) return std::move(trials[0]);
       made = 1;
     }
-    std::vector<StageClock> clocks(count - made);
-    CommonProgress progress(context, std::vector<double>(count - made, 1.0 / (count - made)), static_cast<double>(made) / count, 1);
-    side_by_side(count - made, context,
-                 [&](int i, const RunContext& each) { make(trials[made + i], clocks[i], progress.context_of(i, each)); });
-    for (const StageClock& one : clocks) clock_.add(one);
+    make_side_by_side(trials, made, context);
     return best_of(trials, kBetter);
   }
 
   /// \param first  the pass so far, if there is one
-  /// \returns the better one of it and another, where there are thin parts and quads end short of the surface (docs/decisions/0052)
+  /// \returns the best of it and of others, where there are thin parts and quads end short of the surface (docs/decisions/0052)
   std::optional<Trial> with_room_for_thin_parts(std::optional<Trial> first, const RunContext& context) {
     constexpr double kFar = 1.25, kNearer = 0.8;  // edges, and a part of what it was
-    constexpr double kFirm = 1e-3;  // else sizes give way to integrable frames, and two quads go around where four were planned
-    constexpr double kMany = 1.3;   // which can be settled; a lost limb can't
     if (planned_.thin_places->empty()) return first;
     if (!first) {
       first.emplace(planned_);
       make(*first, clock_, context.in_stage(context.stage, 0, 0.5));
     }
     const RunContext measuring = context.in_stage("quality", 0.5, 0.5);
-    const double farthest = first->error ? kFailed : largest_distance_in_edges(planned_.mesh, first->pass.result.mesh, measuring);
+    const double farthest = largest_distance_in_edges(*first, measuring);
     if (farthest <= kFar) return first;
-    Trial second(hybrid_quad::with_room_for_thin_parts(first->pass.plan, context));
-    second.curl_weight = kFirm;
-    second.most_quads = kMany;
-    make(second, clock_, context.in_stage(context.stage, 0.5, 1));
-    if (!second.error && largest_distance_in_edges(planned_.mesh, second.pass.result.mesh, measuring) > kNearer * farthest) return first;
-    std::vector<Trial> trials{std::move(*first), std::move(second)};
+    std::vector<Trial> others = with_thin_parts_shorter(first->pass.plan, context);
+    make_side_by_side(others, 0, context.in_stage(context.stage, 0.5, 1));
+    std::vector<Trial> trials{std::move(*first)};
+    for (Trial& other : others)
+      if (other.error || largest_distance_in_edges(other, measuring) <= kNearer * farthest) trials.push_back(std::move(other));
     return best_of(trials, 0);
   }
 
  private:
+  std::vector<Trial> with_thin_parts_shorter(const ComponentPlan& plan, const RunContext& context) const {
+    constexpr double kGrowths[] = {1.5, 2.5};
+    constexpr double kFirm = 1e-3;  // else sizes give way to integrable frames, and two quads go around where four were planned
+    constexpr double kMany = 1.3;  // which can be settled; a lost limb can't
+    std::vector<Trial> trials;
+    for (const double growth : kGrowths) {
+      Trial trial(hybrid_quad::with_room_for_thin_parts(plan, growth, context));
+      if (!trials.empty() && trials.back().pass.plan.thin_ratio == trial.pass.plan.thin_ratio) continue;
+      trial.curl_weight = kFirm;
+      trial.most_quads = kMany;
+      trials.push_back(std::move(trial));
+    }
+    return trials;
+  }
+
+  double largest_distance_in_edges(const Trial& trial, const RunContext& context) const {
+    return trial.error ? kFailed : hybrid_quad::largest_distance_in_edges(planned_.mesh, trial.pass.result.mesh, context);
+  }
+
+  /// \param made  so many have been already
+  void make_side_by_side(std::vector<Trial>& trials, int made, const RunContext& context) {
+    const int count = static_cast<int>(trials.size()), left = count - made;
+    std::vector<StageClock> clocks(left);
+    CommonProgress progress(context, std::vector<double>(left, 1.0 / left), static_cast<double>(made) / count, 1);
+    side_by_side(left, context,
+                 [&](int i, const RunContext& each) { make(trials[made + i], clocks[i], progress.context_of(i, each)); });
+    for (const StageClock& one : clocks) clock_.add(one);
+  }
+
   void make(Trial& trial, StageClock& clock, const RunContext& context) const {
     PassSettings settings;
     settings.curl_weight = trial.curl_weight;

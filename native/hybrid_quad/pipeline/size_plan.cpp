@@ -245,11 +245,11 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
   return with;
 }
 
-ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, const RunContext& context) {
-  constexpr double kRatios[] = {0.13, 0.2, 0.25}, kMostQuads = 1.5;
+ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, const RunContext& context) {
+  constexpr double kRatios[] = {0.13, 0.2, 0.25};
   const auto is_cramped = [&](const ThinPlace& place) { return place.length < plan.thin_ratio * plan.length; };
   if (std::none_of(plan.thin_places->begin(), plan.thin_places->end(), is_cramped)) return plan;
-  const double most = kMostQuads * quads_for_lengths(plan.mesh, plan.unlimited);
+  const double most = most_growth * quads_for_lengths(plan.mesh, plan.unlimited);
   std::vector<ComponentPlan> finer{plan};
   finer[0].part = -1;
   for (const double ratio : kRatios) {
