@@ -263,15 +263,15 @@ TEST(SizePlan, ThinPartsGetRoomForFourQuadsAround) {
     return longest;
   };
   const double four_around = 2 * M_PI * kRadius / 4;
-  const ComponentPlan plan = plan_for(130), roomy = with_room_for_thin_parts(plan, 1.5, RunContext{});
+  const ComponentPlan plan = plan_for(130), roomy = with_room_for_thin_parts(plan, 1.5, true, RunContext{});
   EXPECT_GT(longest_on_rod(plan), 1.2 * four_around);
   EXPECT_LT(longest_on_rod(roomy), 1.2 * four_around);
   EXPECT_NEAR(roomy.quads, plan.quads, 1e-6 * plan.quads) << "others are longer for it";
   EXPECT_GT(*std::max_element(roomy.target.begin(), roomy.target.end()), *std::max_element(plan.target.begin(), plan.target.end()));
   const ComponentPlan fine = plan_for(5000);
-  EXPECT_EQ(with_room_for_thin_parts(fine, 1.5, RunContext{}).target, fine.target) << "there is room";
+  EXPECT_EQ(with_room_for_thin_parts(fine, 1.5, true, RunContext{}).target, fine.target) << "there is room";
   const ComponentPlan tiny = plan_for(20);
-  EXPECT_EQ(with_room_for_thin_parts(tiny, 1.5, RunContext{}).target, tiny.target) << "it would take most of the quads";
+  EXPECT_EQ(with_room_for_thin_parts(tiny, 1.5, true, RunContext{}).target, tiny.target) << "it would take most of the quads";
 }
 
 TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {

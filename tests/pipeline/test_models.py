@@ -120,7 +120,7 @@ def test_numbers_along_curves_are_counted_where_all_features_stay():
 
 
 @pytest.mark.parametrize(
-    ("length", "radius", "quads"), [(1.2, 0.06, 120), (1.2, 0.04, 200), (2, 0.05, 200), (0.8, 0.05, 300)]
+    ("length", "radius", "quads"), [(1.2, 0.06, 120), (2, 0.05, 120), (1.2, 0.04, 200), (0.8, 0.05, 300)]
 )
 def test_horns_thinner_than_quads_stay_horns(length, radius, quads):
     """Sizes gave way to fewer irregular vertices, two quads went around, and nothing was left (docs/decisions/0052)."""
@@ -132,6 +132,19 @@ def test_horns_thinner_than_quads_stay_horns(length, radius, quads):
     assert 2 * np.pi * radius < 2 * usual_length, "or there is room for all"
     assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < usual_length
     assert scaled_jacobian(result.vertices, result.quads).mean() > 0.9
+
+
+def test_horns_stay_horns_where_lengths_are_asked_for():
+    """Edges elsewhere stay as long as asked: the horn takes more quads."""
+    length, edge = 2.0, 0.2
+    vertices, faces = surfaces.horned_sphere(length, 0.03)
+    result = hybrid_quad.remesh(vertices, faces, edge_length=edge, sharp_angle=None, threads=2)
+    assert_sound(result, faces)
+    assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < 0.5 * edge
+    corners = result.vertices[result.quads]
+    on_sphere = corners[..., 2].max(axis=1) < 0
+    lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)[on_sphere]
+    assert abs(lengths.mean() / edge - 1) < 0.15
 
 
 @pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])

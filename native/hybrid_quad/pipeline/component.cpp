@@ -244,13 +244,15 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
   ComponentResult broken;
   if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context, broken);
   const ComponentPlan& plan = first ? first->plan : planned;
-  ComponentResult best = remesh_in_passes(plan, first ? std::optional(std::move(first->result)) : std::nullopt, wanted, whole, wishes, guides,
-                                          options, budget, clock, context);
+  // Where lengths count, a plan with shorter ones is for more quads.
+  const double number = options.is_by_count() ? wanted : wanted * plan.quads / planned.quads;
+  ComponentResult best = remesh_in_passes(plan, first ? std::optional(std::move(first->result)) : std::nullopt, number, whole,
+                                          wishes, guides, options, budget, clock, context);
   keep_broken_promises(broken, best);
   if (!planned.guides.empty() && options.improve)
     mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
   if (best.flawed_quads > 0)
-    let_exact_wishes_give_way(plan, wanted, whole, wishes, guides, options, best, budget, clock, context);
+    let_exact_wishes_give_way(plan, number, whole, wishes, guides, options, best, budget, clock, context);
   return best;
 }
 

@@ -122,7 +122,7 @@ class FirstPasses {
     constexpr double kMany = 1.3;  // which can be settled; a lost limb can't
     std::vector<Trial> trials;
     for (const double growth : kGrowths) {
-      Trial trial(hybrid_quad::with_room_for_thin_parts(plan, growth, context));
+      Trial trial(hybrid_quad::with_room_for_thin_parts(plan, growth, options_.is_by_count(), context));
       if (!trials.empty() && trials.back().pass.plan.thin_ratio == trial.pass.plan.thin_ratio) continue;
       trial.curl_weight = kFirm;
       trial.most_quads = kMany;
@@ -187,8 +187,7 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
   if (!options.improve || !planned.guides.empty()) return std::nullopt;
   FirstPasses passes(planned, whole, wishes, guides, options, clock, broken);
   std::optional<Trial> best = passes.with_fewer_or_all_features(context.in_stage(context.stage, 0, 0.8));
-  const bool is_by_count = !(options.edge_length > 0 || options.chord_error > 0);
-  if (is_by_count) best = passes.with_room_for_thin_parts(std::move(best), context.in_stage(context.stage, best ? 0.8 : 0, 0.9));
+  best = passes.with_room_for_thin_parts(std::move(best), context.in_stage(context.stage, best ? 0.8 : 0, 0.9));
   return best ? std::optional(std::move(best->pass)) : std::nullopt;
 }
 

@@ -29,6 +29,9 @@ struct CurveCount {
 };
 
 struct RemeshOptions {
+  /// Whether the number of quads counts, not their lengths.
+  bool is_by_count() const { return !(edge_length > 0 || chord_error > 0); }
+
   int quads = 5000;                ///< asked number of quads (ignored where edge_length > 0)
   double edge_length = 0;          ///< asked quad edge length (scene units)
   bool use_sharp_angle = true;

@@ -245,7 +245,8 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
   return with;
 }
 
-ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, const RunContext& context) {
+ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, bool is_by_count,
+                                       const RunContext& context) {
   constexpr double kRatios[] = {0.13, 0.2, 0.25};
   const auto is_cramped = [&](const ThinPlace& place) { return place.length < plan.thin_ratio * plan.length; };
   if (std::none_of(plan.thin_places->begin(), plan.thin_places->end(), is_cramped)) return plan;
@@ -257,8 +258,10 @@ ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_gr
     finer[0].thin_ratio = ratio;
     plan_lengths_again(finer[0], context);
     if (finer[0].quads > most) continue;
-    balance_plans(finer, plan.quads, context);
-    scale_plan(finer[0], plan.quads / finer[0].quads);
+    if (is_by_count) {
+      balance_plans(finer, plan.quads, context);
+      scale_plan(finer[0], plan.quads / finer[0].quads);
+    }
     return std::move(finer[0]);
   }
   return plan;

@@ -69,10 +69,12 @@ bool make_room_for_count(std::vector<ComponentPlan>& plans, double quads_asked, 
 /// The plan for as many quads with more vertices as corners, where a feature passes.
 ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& corners, PlaneSet mirror_planes, const RunContext& context);
 
-/// The plan for as many quads with edges as short as four quads around thin tubes and tips need, or nearly; other edges get longer for it
-/// (docs/decisions/0052). Where they already are, or nothing shorter is within bounds, the same plan.
-/// \param most_growth  times as many quads as without thin parts may be needed, before others get longer
-ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, const RunContext& context);
+/// The plan with edges as short as four quads around thin tubes and tips need, or nearly (docs/decisions/0052). Where they already are, or
+/// nothing shorter is within bounds, the same plan.
+/// \param most_growth  times as many quads as without thin parts may be needed
+/// \param is_by_count  for as many quads as before: other edges get longer
+ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, bool is_by_count,
+                                       const RunContext& context);
 
 /// The plan for as many quads with fewer features by angle, where these are cramped: more than a few are shorter than quads, or some
 /// gave way to the number already. Else the same plan.
