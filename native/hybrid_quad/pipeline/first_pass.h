@@ -12,9 +12,9 @@ struct FirstPass {
   ComponentResult result;
 };
 
-/// The best of some first passes, by shapes and distance, where plans for as many quads differ in what they give room to: where features by
-/// angle are shorter than quads, passes with all and with fewer of them (docs/decisions/0043); where the quads of that end short of tubes
-/// and tips, one more with shorter edges there (docs/decisions/0052).
+/// The best of some first passes, by shapes and distance, where plans differ in what they give room to: where features by angle are shorter
+/// than quads, passes with all and with fewer of them (docs/decisions/0043); where the quads of that end short of tubes and tips, up to two
+/// more with shorter edges there (docs/decisions/0052). For as many quads, unless lengths were asked for instead of a number.
 /// \param broken  gets the promises that broke
 /// \returns none where there is one plan only, or no pass came to an end
 std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const SurfaceIndex& whole, const Wishes& wishes,
