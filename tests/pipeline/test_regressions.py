@@ -22,7 +22,7 @@ def test_what_once_failed(name):
 
 
 def test_tips_that_let_go_are_counted():
-    case = load_case(FOLDER / "small_quads_beside_large")
+    case = load_case(FOLDER / "tips_that_let_go")
     report = hybrid_quad.remesh(case.vertices, case.faces, **arguments_of(case)).report
     assert (report["flawed_quads"], report["repairs"]["released_tips"]) == (0, 1)
 
