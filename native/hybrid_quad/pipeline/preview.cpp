@@ -107,8 +107,8 @@ Preview preview(const PolygonSoup& soup, const RemeshOptions& options, bool with
   const PlaneSet planes = run.domain.options.symmetry.planes;
   const std::shared_ptr<const SurfaceIndex> whole = with_quads ? index_of_whole(run) : nullptr;
   const Collector collector(run.frame, planes, out);
-  const CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
-  if (run.is_by_count)
+  const CountBudget budget(run.plans, run.options.is_by_count() ? run.wanted / run.images : 0);
+  if (run.options.is_by_count())
     for (ComponentPlan& plan : run.plans) scale_plan(plan, budget.factor());
   std::vector<ComponentPreview> found(run.plans.size());
   std::vector<StageClock> clocks(run.plans.size());

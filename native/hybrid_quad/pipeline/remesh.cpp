@@ -160,7 +160,7 @@ void measure_distances(RemeshResult& result, const std::vector<ComponentPlan>& p
 }
 
 std::string count_warning(const RemeshReport& report, const RunPlan& run) {
-  const std::string numbers = (run.is_by_count ? "asked for " : "edges as long as asked make ") + std::to_string(std::lround(run.wanted)) +
+  const std::string numbers = (run.options.is_by_count() ? "asked for " : "edges as long as asked make ") + std::to_string(std::lround(run.wanted)) +
                               " quads, got " + std::to_string(report.quads);
   if (report.fewest_quads > run.wanted)
     return numbers + ": with so many parts, handles and holes there can't be fewer than " + std::to_string(report.fewest_quads);

@@ -68,7 +68,7 @@ std::vector<std::vector<int>> component_waves(const std::vector<ComponentPlan>& 
 
 std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex& whole, StageClock& clock) {
   std::vector<ComponentResult> parts(run.components.size());
-  CountBudget budget(run.plans, run.is_by_count ? run.wanted / run.images : 0);
+  CountBudget budget(run.plans, run.options.is_by_count() ? run.wanted / run.images : 0);
   const double extra = kExtraWork + kExtraWorkPerQuad * run.wanted;
   WorkBudget work{extra, kWorkForMarks * extra};
   CommonProgress progress(run.context, shares_of_area(run), 0.04, 0.97);
@@ -77,8 +77,8 @@ std::vector<ComponentResult> remesh_components(RunPlan& run, const SurfaceIndex&
     for (auto i = wave.rbegin(); i != wave.rend(); ++i) {  // the largest first, that none is left to run alone
       ComponentPlan& plan = run.plans[*i];
       const double planned = plan.quads;
-      if (run.is_by_count) scale_plan(plan, budget.factor());
-      const double wanted = run.is_by_count ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
+      if (run.options.is_by_count()) scale_plan(plan, budget.factor());
+      const double wanted = run.options.is_by_count() ? std::max(budget.share(planned), kLeastOfPlan * plan.quads) : planned;
       jobs.push_back({*i, planned, wanted, work, {}, {}});
     }
     side_by_side(static_cast<int>(jobs.size()), run.context, [&](int j, const RunContext& each) {

@@ -98,7 +98,6 @@ struct Sizes {
   std::vector<Wishes> wishes;  ///< without directions, which no length depends on
   std::vector<ComponentPlan> plans;
   double wanted = 0;  ///< quads, of the whole
-  bool is_by_count = false;
 };
 
 /// \param marked, chains  of each component  \param extent  of the whole surface
@@ -121,8 +120,7 @@ Sizes sizes_on(const std::vector<Component>& components, const std::vector<Marke
   out.wanted = images * weighted_area / (length * length);
   for (std::size_t i = 0; i < components.size(); ++i)
     out.plans.push_back(plan_component(components[i].mesh, length, marked[i], chains[i], out.wishes[i], options, context));
-  out.is_by_count = !(given > 0);
-  if (out.is_by_count) {
+  if (options.is_by_count()) {
     balance_plans(out.plans, out.wanted / images, context);
     make_room_for_count(out.plans, out.wanted / images, options.symmetry.planes, context);
   }
@@ -204,7 +202,7 @@ RunPlan plan_run(const PolygonSoup& soup, const RemeshOptions& scene_options, co
   });
   return {std::move(options), std::move(context), frame, std::move(input), std::move(domain), std::move(guides), images,
           std::move(components), std::move(marked), std::move(sizes.wishes), std::move(sizes.plans), std::move(counts), area,
-          sizes.wanted, sizes.is_by_count};
+          sizes.wanted};
 }
 
 std::shared_ptr<const SurfaceIndex> index_of_whole(const RunPlan& run) {

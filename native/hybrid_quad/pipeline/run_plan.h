@@ -37,7 +37,6 @@ struct RunPlan {
   CurveCountLedger counts;
   double area = 0;          ///< of the remeshed part
   double wanted = 0;        ///< quads, of the whole
-  bool is_by_count = false; ///< the number of quads counts, not their lengths
 };
 
 /// \param report  gets what there is to say of the input

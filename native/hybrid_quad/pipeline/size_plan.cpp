@@ -101,6 +101,7 @@ void shorten_for_counts(ComponentPlan& plan, const RunContext& context) {
   grade_lengths(plan.mesh, longest, plan.target, FeatureSizeOptions{}.growth, context);
 }
 
+/// The lengths alone, for features and thin places as they are known.
 void plan_lengths_again(ComponentPlan& plan, const RunContext& context) {
   FeatureSizeOptions feature_size;
   feature_size.least_ratio = plan.least_ratio;
