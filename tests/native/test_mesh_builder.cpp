@@ -178,6 +178,78 @@ TEST(MeshBuilder, WeldsLooseTriangles) {
   EXPECT_EQ(boundary_edges(built.mesh), 0);
 }
 
+/// As programs make it from angles: a vertex for each meridian at the poles, the last meridian beside the first, where a whole turn ends but
+/// for rounding. \param rounded  to single precision, in which the poles are as wide as the sine of pi
+PolygonSoup unrolled_sphere(int around, int along, bool with_flat_faces, bool rounded) {
+  PolygonSoup soup;
+  const double pi = std::acos(-1.0);
+  for (int j = 0; j <= along; ++j)
+    for (int i = 0; i <= around; ++i) {
+      const double t = 2 * pi * i / around, p = pi * j / along;
+      if (rounded) {
+        const auto turn = static_cast<float>(t), height = static_cast<float>(p);
+        soup.positions.emplace_back(std::cos(turn) * std::sin(height), std::sin(turn) * std::sin(height), std::cos(height));
+      } else {
+        soup.positions.emplace_back(std::cos(t) * std::sin(p), std::sin(t) * std::sin(p), std::cos(p));
+      }
+    }
+  for (int j = 0; j < along; ++j)
+    for (int i = 0; i < around; ++i) {
+      const int a = j * (around + 1) + i, b = a + around + 1;
+      if (with_flat_faces || j > 0) add_face(soup, {a, b, a + 1});
+      if (with_flat_faces || j + 1 < along) add_face(soup, {b, b + 1, a + 1});
+    }
+  return soup;
+}
+
+TEST(MeshBuilder, ClosesPolesAndTheSeamOfATurn) {
+  for (const bool with_flat_faces : {false, true})
+    for (const bool rounded : {false, true}) {
+      const PolygonSoup soup = unrolled_sphere(24, 12, with_flat_faces, rounded);
+      const BuiltMesh built = build_mesh(soup);
+      EXPECT_EQ(built.mesh.vertex_count(), 24 * 11 + 2) << with_flat_faces << rounded;
+      EXPECT_EQ(built.mesh.euler_characteristic(), 2);
+      EXPECT_EQ(boundary_edges(built.mesh), 0);
+      EXPECT_TRUE(has_defect(built.defects, "nearly_welded_vertex"));
+      EXPECT_EQ(has_defect(built.defects, "pinhole"), with_flat_faces) << "else the poles close with the meridians";
+    }
+}
+
+TEST(MeshBuilder, KeepsHolesAndSlitsThatAreThere) {
+  const PolygonSoup sphere = test::soup_of(test::icosphere(2));
+  const auto rim_width = [&](double width) {
+    PolygonSoup soup = sphere;
+    for (const int v : {0, 1, 2}) {
+      const Vector3 towards = soup.positions[sphere.face_vertices[0]];
+      soup.positions[sphere.face_vertices[v]] = towards + width * (soup.positions[sphere.face_vertices[v]] - towards);
+    }
+    soup.face_sizes.erase(soup.face_sizes.begin());
+    soup.face_vertices.erase(soup.face_vertices.begin(), soup.face_vertices.begin() + 3);
+    return build_mesh(soup);
+  };
+  EXPECT_EQ(boundary_edges(rim_width(1e-2).mesh), 3);
+  EXPECT_EQ(boundary_edges(rim_width(2e-5).mesh), 3);
+  const BuiltMesh closed = rim_width(1e-7);
+  EXPECT_EQ(boundary_edges(closed.mesh), 0);
+  EXPECT_TRUE(has_defect(closed.defects, "pinhole"));
+
+  PolygonSoup slit = loose(test::soup_of(test::torus(16, 8)));
+  for (int c = 0; c < 3; ++c) slit.positions[c] += Vector3::Constant(1e-4);
+  EXPECT_EQ(boundary_edges(build_mesh(slit).mesh), 6) << "a loose face beside a hole of its size";
+}
+
+TEST(MeshBuilder, PartsSmallBesideOneVertexKeepTheirHoles) {
+  PolygonSoup soup = test::soup_of(test::torus(12, 8));
+  soup.face_sizes.erase(soup.face_sizes.begin());
+  soup.face_vertices.erase(soup.face_vertices.begin(), soup.face_vertices.begin() + 3);
+  for (Vector3& p : soup.positions) p *= 1e-7;
+  const int first = static_cast<int>(soup.positions.size());
+  for (const Vector3& p : {Vector3(1, 0, 0), Vector3(1, 1, 0), Vector3(0, 1, 0)}) soup.positions.push_back(p);
+  add_face(soup, {first, first + 1, first + 2});
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_FALSE(has_defect(built.defects, "pinhole")) << "its edges are as short";
+}
+
 /// Both, each with vertices of its own; the second one moved, and with its back to the front.
 PolygonSoup with_inverted_copy(PolygonSoup soup, const Vector3& shift = Vector3::Zero()) {
   const PolygonSoup copy = soup;

@@ -108,9 +108,13 @@ def unwelded():
     return vertices[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)
 
 
+def unrolled():
+    return surfaces.unrolled_sphere()
+
+
 REPAIRED = {
     made.__name__: made
-    for made in (fin, some_faces_turned, two_bodies_at_one_vertex, unused_vertices, faces_twice, unwelded)
+    for made in (fin, some_faces_turned, two_bodies_at_one_vertex, unused_vertices, faces_twice, unwelded, unrolled)
 }
 
 
@@ -141,6 +145,16 @@ def test_check_names_what_remesh_refuses(name):
 @pytest.mark.parametrize("mesh", [surfaces.torus(), surfaces.grid(3, 3), surfaces.mixed_polygons()], ids=len)
 def test_check_finds_nothing_wrong_with_a_sound_mesh(mesh):
     assert hybrid_quad.check(*mesh) == []
+
+
+@pytest.mark.parametrize("single", [False, True])
+def test_spheres_made_from_angles_have_no_poles_and_no_seam(single):
+    result = hybrid_quad.remesh(*surfaces.unrolled_sphere(single=single), quads=500)
+    assert_sound(result, surfaces.sphere()[1])
+    assert result.report["irregular_vertices"] == 8
+    assert result.report["scaled_jacobian"]["min"] > 0.8
+    gone = {code: count for d in result.report["defects"] for code, count in [(d["code"], len(d["elements"]))]}
+    assert gone["pinhole"] == 2 * 31, "all vertices of both poles but one each"
 
 
 @pytest.mark.parametrize("faces", [[[0, 1, 2]], [[0, 1, 2], [1, 3, 2]]])

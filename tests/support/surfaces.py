@@ -59,6 +59,18 @@ def sphere(n: int = 8) -> tuple[np.ndarray, np.ndarray]:
     return vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces
 
 
+def unrolled_sphere(around: int = 32, along: int = 16, *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """As programs make it from angles: quads, with a vertex for each meridian at the poles and the last meridian beside the first."""
+    kind = np.float32 if single else np.float64
+    turn, height = np.meshgrid(
+        np.linspace(0, 2 * np.pi, around + 1, dtype=kind), np.linspace(0, np.pi, along + 1, dtype=kind)
+    )
+    vertices = np.stack([np.cos(turn) * np.sin(height), np.sin(turn) * np.sin(height), np.cos(height)], axis=2)
+    first = (np.arange(along)[:, None] * (around + 1) + np.arange(around)).ravel()
+    faces = np.stack([first, first + around + 1, first + around + 2, first + 1], axis=1)
+    return vertices.reshape(-1, 3).astype(np.float64), faces
+
+
 def horned_sphere(length: float, radius: float, around: int = 32, along: int = 140) -> tuple[np.ndarray, np.ndarray]:
     """Unit sphere, of genus 0, with a round horn on its top that gets thinner from `radius` to two fifths of it."""
     arc = np.pi - np.arcsin(radius)

@@ -9,6 +9,7 @@ WORDS = {
     "flipped_face": ("flipped face", "flipped faces"),
     "unwelded_vertex": ("unmerged vertex", "unmerged vertices"),
     "nearly_welded_vertex": ("nearly merged vertex", "nearly merged vertices"),
+    "pinhole": ("vertex around a hole too small to see", "vertices around holes too small to see"),
     "t_junction": ("vertex on the edge of another face", "vertices on edges of other faces"),
     "duplicate_face": ("duplicate face", "duplicate faces"),
     "zero_area_face": ("face without area", "faces without area"),

@@ -16,6 +16,7 @@
 #include "hybrid_quad/mesh/manifold_gluing.h"
 #include "hybrid_quad/mesh/mesh_oddities.h"
 #include "hybrid_quad/mesh/negligible_faces.h"
+#include "hybrid_quad/mesh/pinholes.h"
 #include "hybrid_quad/mesh/polygon_cuts.h"
 #include "hybrid_quad/mesh/polygon_triangulation.h"
 #include "hybrid_quad/mesh/soup_order.h"
@@ -60,6 +61,9 @@ class MeshBuilder {
   void make_triangles(const RunContext& context);
   void weld();
   void weld_exactly();
+  void weld_soup();
+  void weld_seams();
+  void close_pinholes();
   bool merge_vertices(const std::vector<int>& target);
   void note_targets(const std::vector<int>& target);
   void drop_copied_parts();
@@ -277,7 +281,28 @@ void MeshBuilder::weld_exactly() {
 
 void MeshBuilder::weld() {
   weld_exactly();
-  if (is_closed_ || triangles_.size() < 8 || open_edge_share(triangles_) < kLooseShare) return;
+  if (is_closed_) return;
+  if (triangles_.size() >= 8 && open_edge_share(triangles_) >= kLooseShare)
+    weld_soup();
+  else
+    weld_seams();
+}
+
+void MeshBuilder::weld_seams() {
+  const std::vector<int> target = nearly_welded_seams(positions_, open_edges(triangles_));
+  if (!merge_vertices(target)) return;
+  note_targets(target);
+  note("nearly_welded_vertex", "vertex", merged(target), "merged with the vertex next to it");
+}
+
+void MeshBuilder::close_pinholes() {
+  const std::vector<int> target = closed_pinholes(positions_, triangles_, open_edges(triangles_));
+  if (!merge_vertices(target)) return;
+  note_targets(target);
+  note("pinhole", "vertex", merged(target), "closed: the vertices around it are merged");
+}
+
+void MeshBuilder::weld_soup() {
   const std::vector<int> target = nearly_welded_vertices(positions_, kLooseTolerance);
   const auto triangles = triangles_;
   const auto polygon = polygon_;
@@ -475,6 +500,8 @@ BuiltMesh MeshBuilder::build(const RunContext& context) {
   if (!split_at.empty()) weld_exactly();
   note("unwelded_vertex", "vertex", std::move(welded_), "merged with the vertex at the same place");
   note("t_junction", "vertex", std::move(split_at), "the edge beside it is split, which closes the crack");
+  context.checkpoint();
+  if (!is_closed_) close_pinholes();
   context.checkpoint();
   BuiltMesh built = glue(context);
   context.checkpoint();

@@ -1,13 +1,44 @@
 #include "hybrid_quad/mesh/vertex_welding.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "hybrid_quad/base/disjoint_sets.h"
 #include "hybrid_quad/mesh/bucket_sort.h"
 
 namespace hybrid_quad {
+
+namespace {
+
+/// For every vertex the first of those that it is near to, from one to the next; itself for those that are not listed.
+std::vector<int> near_places_of(const std::vector<Vector3>& positions, const std::vector<int>& vertices, double tolerance) {
+  using Cell = std::array<std::int64_t, 3>;
+  const auto cell_of = [&](int v) {
+    Cell cell{};
+    for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(positions[v][k] / tolerance));
+    return cell;
+  };
+  std::vector<std::pair<Cell, int>> cells;
+  cells.reserve(vertices.size());
+  for (const int v : vertices) cells.emplace_back(cell_of(v), v);
+  std::sort(cells.begin(), cells.end());
+  DisjointSets sets(positions.size());
+  for (const auto& [cell, v] : cells)
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const Cell low{cell[0] + x, cell[1] + y, cell[2] - 1};
+        for (auto it = std::lower_bound(cells.begin(), cells.end(), std::pair(low, -1));
+             it != cells.end() && it->first[0] == low[0] && it->first[1] == low[1] && it->first[2] <= cell[2] + 1; ++it)
+          if (it->second < v && (positions[it->second] - positions[v]).norm() <= tolerance) sets.join(it->second, v);
+      }
+  return sets.sets();
+}
+
+}  // namespace
 
 std::vector<int> places_of(const std::vector<Vector3>& positions) {
   struct Point {
@@ -68,6 +99,41 @@ std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const st
         sets.join(edges[i].low, edges[i - 1].low);
         sets.join(edges[i].high, edges[i - 1].high);
       }
+  }
+  return sets.sets();
+}
+
+std::vector<int> nearly_welded_seams(const std::vector<Vector3>& positions, const std::vector<std::array<int, 2>>& open) {
+  constexpr double kGap = 1e-6, kGapOfLength = 1e-4;
+  struct Side {
+    int low_place, high_place, low, high;
+    bool is_forward;
+    bool is_beside(const Side& o) const { return low_place == o.low_place && high_place == o.high_place; }
+  };
+  std::vector<int> ends;
+  for (const auto& e : open) ends.insert(ends.end(), e.begin(), e.end());
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  const std::vector<int> place = near_places_of(positions, ends, kGap);
+  std::vector<Side> sides;
+  for (const auto& e : open) {
+    const bool is_forward = place[e[0]] < place[e[1]];
+    const int low = is_forward ? e[0] : e[1], high = is_forward ? e[1] : e[0];
+    if (place[low] != place[high]) sides.push_back({place[low], place[high], low, high, is_forward});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return std::tie(x.low_place, x.high_place, x.low, x.high) < std::tie(y.low_place, y.high_place, y.low, y.high);
+  });
+  DisjointSets sets(positions.size());
+  const auto gap = [&](int v, int w) { return (positions[v] - positions[w]).norm(); };
+  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+    for (j = i + 1; j < sides.size() && sides[j].is_beside(sides[i]);) ++j;
+    if (j != i + 2 || sides[i].is_forward == sides[i + 1].is_forward) continue;
+    const Side &a = sides[i], &b = sides[i + 1];
+    const double length = std::min(gap(a.low, a.high), gap(b.low, b.high));
+    if (std::max(gap(a.low, b.low), gap(a.high, b.high)) > kGapOfLength * length) continue;
+    sets.join(a.low, b.low);
+    sets.join(a.high, b.high);
   }
   return sets.sets();
 }

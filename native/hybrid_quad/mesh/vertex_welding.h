@@ -15,6 +15,10 @@ std::vector<int> places_of(const std::vector<Vector3>& positions);
 /// \param open  what open_edges() gives
 std::vector<int> welded_vertices(const std::vector<Vector3>& positions, const std::vector<std::array<int, 2>>& open);
 
+/// The same for seams whose sides differ by rounding, as where a full turn does not end exactly where it began: two open edges that run opposite
+/// ways, both their ends a ten-thousandth of their length apart at most. \param positions  of a mesh whose diagonal is 1
+std::vector<int> nearly_welded_seams(const std::vector<Vector3>& positions, const std::vector<std::array<int, 2>>& open);
+
 /// The same for a soup of loose triangles whose corners differ by rounding: corners nearer than `tolerance` merge.
 std::vector<int> nearly_welded_vertices(const std::vector<Vector3>& positions, double tolerance);
 

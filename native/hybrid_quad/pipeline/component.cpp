@@ -45,7 +45,7 @@ bool is_hopeless(const PassSettings& settings, const ComponentResult& best) {
 
 /// Features that hold more quads than there are to be put their number out of reach anyway. Where passes with as few quads are in vain,
 /// one with enough for them leaves hardly any flawed; settling takes out again what can go without.
-constexpr double kHeldByFeatures = 1.25, kEnoughForFeatures = 2.5;  // times the number wanted
+constexpr double kHeldByFeatures = 1.25, kHeldFromTheStart = 2, kEnoughForFeatures = 2.5;  // times the number wanted
 
 /// Doubtful quads alone are a reason for another pass where they are few, and as long as not too many quads were extracted,
 /// of those that fit: where sheets touch there are about as many after every pass, and where each takes several tries to
@@ -107,8 +107,8 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
     settings.is_rough = is_rough;
     if (any && is_only_for_flawed(settings.kind) && best.flawed_quads == 0) break;
     if (any && is_hopeless(settings, best)) continue;
-    if (needs_more && settings.quads_factor < kEnoughForFeatures) continue;
     const bool without_features = settings.kind == PassKind::kWithoutFeatures, as_needed = settings.kind == PassKind::kAsNeeded;
+    if (needs_more && !without_features && settings.quads_factor < kEnoughForFeatures) continue;
     if (without_features) {
       fewer_features = without_features_at(planned, flawed, options.symmetry.planes, context);
       if (fewer_features.given_way == planned.given_way) continue;
@@ -152,9 +152,11 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
         best.passes = result.passes;
         keep_broken_promises(result, best);
       }
+      const double quads = static_cast<double>(best.mesh.quads.size());
+      if (!any && quads > kHeldFromTheStart * count) needs_more = true;
       any = true;
       if (best.doubtful_quads == 0 && best.missed_counts == 0) break;
-      if (is_in_vain && (needs_more || static_cast<double>(best.mesh.quads.size()) < kHeldByFeatures * count)) break;
+      if (is_in_vain && (needs_more || quads < kHeldByFeatures * count)) break;
       if (is_in_vain) {
         needs_more = true;
         limits.clear();

@@ -35,7 +35,8 @@ struct Trial {
   /// A hundredth of an edge off the surface weighs as much as this many hundredths of the scaled Jacobian.
   static constexpr double kDistanceInShapes = 4;
   double score() const { return mean_shape(pass.result.mesh) - kDistanceInShapes * distance; }
-  bool has_far_too_many() const { return static_cast<double>(pass.result.mesh.quads.size()) > most_quads * pass.plan.quads; }
+  double quads_for_each_wanted() const { return static_cast<double>(pass.result.mesh.quads.size()) / pass.plan.quads; }
+  bool has_far_too_many() const { return quads_for_each_wanted() > most_quads; }
 };
 
 /// Plans that differ in how many features by angle give way, the one with the fewest left first; the plan itself alone where hardly any are in
@@ -55,18 +56,6 @@ std::vector<ComponentPlan> plans_to_try(const ComponentPlan& planned, PlaneSet m
     scale_plan(plans.back(), planned.quads / plans.back().quads);
   }
   return plans;
-}
-
-/// How far the surface is from the quads where it is farthest, in edge lengths: at some of its vertices, several for a quad.
-double largest_distance_in_edges(const TriangleMesh& surface, const QuadMesh& quads, const RunContext& context) {
-  constexpr std::size_t kPerQuad = 8, kLeast = 4000;
-  const std::size_t wanted = std::max(kLeast, kPerQuad * quads.quads.size());
-  const int stride = std::max(1, static_cast<int>(surface.vertex_count() / wanted));
-  std::vector<Vector3> places;
-  for (int v = 0; v < surface.vertex_count(); v += stride) places.push_back(surface.position(v));
-  double squared = 0;
-  for (const SurfacePoint& nearest : nearest_on_quads(places, quads, context)) squared = std::max(squared, nearest.squared_distance);
-  return std::sqrt(squared) / mean_edge_length(quads);
 }
 
 class FirstPasses {
@@ -99,11 +88,13 @@ class FirstPasses {
   /// \returns the best of it and of others, where there are thin parts and quads end short of the surface (docs/decisions/0052)
   std::optional<Trial> with_room_for_thin_parts(std::optional<Trial> first, const RunContext& context) {
     constexpr double kFar = 1.25, kNearer = 0.8;  // edges, and a part of what it was
+    constexpr double kHeld = 1.3;  // times the number: where features hold so many, parts have no room for more
     if (planned_.thin_places->empty()) return first;
     if (!first) {
       first.emplace(planned_);
       make(*first, clock_, context.in_stage(context.stage, 0, 0.5));
     }
+    if (first->quads_for_each_wanted() > kHeld) return first;
     const RunContext measuring = context.in_stage("quality", 0.5, 0.5);
     const double farthest = largest_distance_in_edges(*first, measuring);
     if (farthest <= kFar) return first;
@@ -132,7 +123,7 @@ class FirstPasses {
   }
 
   double largest_distance_in_edges(const Trial& trial, const RunContext& context) const {
-    return trial.error ? kFailed : hybrid_quad::largest_distance_in_edges(planned_.mesh, trial.pass.result.mesh, context);
+    return trial.error ? kFailed : farthest_from_quads(planned_.mesh, trial.pass.result.mesh, context).edges;
   }
 
   /// \param made  so many have been already

@@ -1,7 +1,9 @@
 #include "hybrid_quad/pipeline/remesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <utility>
 
@@ -197,6 +199,18 @@ std::string flawed_warning(const RemeshReport& report, bool gave_up) {
   return gave_up ? text + "; more tries would have taken too long" : text;
 }
 
+/// Where the quads end short of something thinner than they are long; empty where they don't.
+std::string lost_part_warning(const RunPlan& run, const QuadMesh& quads, const RunContext& context) {
+  constexpr double kFar = 1.25;  // edges; what merely bends between them is off by less
+  const FarthestPlace farthest = farthest_from_quads(surface_of(run), quads, context);
+  if (farthest.edges <= kFar) return {};
+  const Vector3 place = run.frame.outward(farthest.place);
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), "the surface is up to %.1f edge lengths off the quads, at (%.4g, %.4g, %.4g)", farthest.edges,
+                place.x(), place.y(), place.z());
+  return std::string(text.data()) + ": what is thinner there than the quads is cut short; more quads, or a higher density there, keep it";
+}
+
 /// What was asked and not met, and quads that want a look.
 void add_warnings(const RunPlan& run, const std::vector<ComponentResult>& parts, const ShapeQuality& shape,
                   RemeshResult& result) {
@@ -288,6 +302,8 @@ RemeshResult remesh(const PolygonSoup& soup, const RemeshOptions& scene_options,
       guide.fit.edge_length *= run.frame.scale;
     }
     record_shapes(shape, report);
+    if (std::string lost = lost_part_warning(run, result.mesh, run.context.in_stage("quality", 0.97, 0.97)); !lost.empty())
+      report.warnings.push_back(std::move(lost));
     report.edge_loops = edge_loops_of(result.mesh);
     if (run.options.measure_distances) measure_distances(result, run.plans, parts, *whole, run.context.in_stage("quality", 0.97, 1.0));
   });

@@ -242,6 +242,20 @@ std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, c
   return out;
 }
 
+FarthestPlace farthest_from_quads(const TriangleMesh& surface, const QuadMesh& quads, const RunContext& context) {
+  constexpr std::size_t kPerQuad = 8, kLeast = 4000;
+  const std::size_t wanted = std::max(kLeast, kPerQuad * quads.quads.size());
+  const int stride = std::max(1, static_cast<int>(surface.vertex_count() / wanted));
+  std::vector<Vector3> places;
+  for (int v = 0; v < surface.vertex_count(); v += stride)
+    if (surface.outgoing(v) >= 0) places.push_back(surface.position(v));
+  const std::vector<SurfacePoint> nearest = nearest_on_quads(places, quads, context);
+  const auto farthest = std::max_element(nearest.begin(), nearest.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
+    return a.squared_distance < b.squared_distance;
+  });
+  return {places[farthest - nearest.begin()], std::sqrt(farthest->squared_distance) / mean_edge_length(quads)};
+}
+
 DirectedDistance directed_distance(const TriangleMesh& from, const SurfaceIndex& to, const RunContext& context, int samples) {
   const Tally tally = one_sided_distance(from, to, samples, context);
   return {tally.largest, tally.sum};

@@ -87,6 +87,16 @@ struct SurfaceDistance {
 /// \pre `quads` is valid (violations_of)
 std::vector<SurfacePoint> nearest_on_quads(const std::vector<Vector3>& points, const QuadMesh& quads, const RunContext& context);
 
+/// Where a surface is farthest from its quads.
+struct FarthestPlace {
+  Vector3 place;  ///< on the surface, scene units
+  double edges = 0;  ///< how far the quads are from it, in mean lengths of their edges
+};
+
+/// Looked for among the surface's vertices, several for a quad, evenly strided. The same for any number of threads.
+/// \pre `quads` is valid (violations_of)
+FarthestPlace farthest_from_quads(const TriangleMesh& surface, const QuadMesh& quads, const RunContext& context);
+
 /// Symmetric distance between the quads (each split along its first diagonal) and the input, from evenly spread samples
 /// and the vertices of both. The same for any number of threads.
 /// \pre `quads` is valid (violations_of)
