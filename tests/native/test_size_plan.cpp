@@ -274,6 +274,78 @@ TEST(SizePlan, ThinPartsGetRoomForFourQuadsAround) {
   EXPECT_EQ(with_room_for_thin_parts(tiny, 1.5, true, RunContext{}).target, tiny.target) << "it would take most of the quads";
 }
 
+TEST(ThinStretch, LengthsAreThoseOfSquaresWithAsMuchArea) {
+  const ThinStretch stretch{2.0, 16};
+  for (const double edge : {1e-3, 0.05, 0.125, 0.3, 1.0, 1.9, 2.0, 5.0}) {
+    const double h = stretch.with_across(edge), ratio = stretch.ratio(h);
+    EXPECT_NEAR(stretch.across(h), edge, 1e-12);
+    EXPECT_NEAR(stretch.across(h) * ratio * edge, h * h, 1e-12) << "an edge along by an edge across";
+    EXPECT_LE(ratio, 16);
+    EXPECT_LE(ratio * edge, std::max(edge, 2.0) + 1e-12) << "edges along are no longer than usual";
+  }
+  EXPECT_FALSE(ThinStretch{}.is_any());
+  EXPECT_EQ(ThinStretch{}.with_across(0.3), 0.3);
+}
+
+/// Along the z axis, of length 4.
+TriangleMesh rod(int sides, double radius) { return test::capped_cylinder(sides, 200, radius, 4); }
+
+TEST(ThinTubes, HaveAsFewSidesAsTheyLike) {
+  for (const int sides : {4, 6, 8, 24}) {
+    const TriangleMesh mesh = rod(sides, 0.02);
+    const auto& ends = mesh.positions();
+    const double middle = std::accumulate(ends.begin(), ends.end(), 0.0, [](double z, const Vector3& p) { return z + p.z(); }) /
+                          mesh.vertex_count();
+    const SurfaceIndex index(mesh, {}, RunContext{});
+    const ThinTubes tubes = thin_tubes(index, 0.1, RunContext{});
+    EXPECT_TRUE(is_wire(tubes)) << sides << " sides, " << tubes.share;
+    EXPECT_TRUE(is_wire(index, 0.1, RunContext{}));
+    for (const ThinPlace& place : tubes.places) {
+      const Vector3& p = mesh.position(place.vertex);
+      if (p.head<2>().norm() < 0.019 || std::abs(p.z() - middle) > 1.9) continue;  // where it ends
+      EXPECT_LT(place.length, 1.05 * 2 * M_PI * 0.02 / 4);
+      EXPECT_GT(place.length, 0.5 * 2 * M_PI * 0.02 / 4);
+    }
+    EXPECT_FALSE(is_wire(thin_tubes(index, 0.02, RunContext{}))) << "with room for four such quads around";
+  }
+  const TriangleMesh ball = test::icosphere(3);
+  EXPECT_FALSE(is_wire(SurfaceIndex(ball, {}, RunContext{}), 0.3, RunContext{}));
+}
+
+TEST(SizePlan, WiresGetFourQuadsAroundForNoMoreQuads) {
+  constexpr double kRadius = 0.02, kFourAround = 2 * M_PI * kRadius / 4;
+  const TriangleMesh mesh = rod(8, kRadius);
+  RemeshOptions options;
+  options.use_sharp_angle = false;
+  const auto tried = [&](double quads, bool is_by_count) {
+    const ComponentPlan plan =
+        plan_component(mesh, std::sqrt(mesh.total_area() / quads), {}, {}, Wishes{}, options, RunContext{});
+    return with_long_quads(plan, thin_tubes(*plan.index, plan.length, RunContext{}), 1.0, is_by_count, RunContext{});
+  };
+  const auto longest_across = [](const ComponentPlan& plan) {
+    double longest = 0;
+    for (const double h : plan.target) longest = std::max(longest, plan.thin_stretch.across(h));
+    return longest;
+  };
+  const std::optional<ComponentPlan> plan = tried(80, true);
+  ASSERT_TRUE(plan);
+  EXPECT_LT(longest_across(*plan), 1.2 * kFourAround);
+  EXPECT_NEAR(plan->quads, 80, 4);
+  EXPECT_GT(plan->thin_stretch.most, 1);
+  const std::optional<ComponentPlan> few = tried(20, true);
+  ASSERT_TRUE(few);
+  EXPECT_LT(longest_across(*few), 1.2 * kFourAround);
+  EXPECT_GT(few->quads, 20) << "four quads around come first";
+  EXPECT_LE(few->quads, 80);
+  const TriangleMesh ball = test::icosphere(3);
+  const ComponentPlan round = plan_component(ball, 1, {}, {}, Wishes{}, options, RunContext{});
+  EXPECT_FALSE(is_wire(thin_tubes(*round.index, round.length, RunContext{})));
+
+  ComponentPlan finer = *plan;
+  scale_plan(finer, 4);
+  EXPECT_NEAR(finer.thin_stretch.ratio(finer.target[100]), plan->thin_stretch.ratio(plan->target[100]), 1e-9);
+}
+
 TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {
   // The rim of a plate that is a hundredth of an edge length thick, and of one that is not.
   const auto curves_of = [](double thickness, bool is_marked) {

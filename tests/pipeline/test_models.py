@@ -1,6 +1,7 @@
 """Real models: those of the repository, and more where a collection of test meshes lies beside it."""
 
 import csv
+import re
 import zlib
 from pathlib import Path
 
@@ -145,6 +146,40 @@ def test_horns_stay_horns_where_lengths_are_asked_for():
     on_sphere = corners[..., 2].max(axis=1) < 0
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)[on_sphere]
     assert abs(lengths.mean() / edge - 1) < 0.15
+
+
+def _course() -> np.ndarray:
+    """Up, around a bend and down again, some."""
+    s = np.linspace(0, 1, 60)
+    bend = np.stack([0.3 - 0.3 * np.cos(np.pi * s), 0 * s, 2 + 0.3 * np.sin(np.pi * s)], axis=1)
+    return np.concatenate([np.outer(s, [0, 0, 2]), bend[1:], bend[-1] - np.outer(s[1:], [0, 0, 1])])
+
+
+@pytest.mark.parametrize(("sides", "quads"), [(4, 100), (6, 100), (8, 60), (8, 200), (24, 100)])
+def test_wires_thinner_than_quads_keep_their_course(sides, quads):
+    """With quads as long as wide there are too few for four around, and nothing was left but a crumpled sheet (docs/decisions/0053)."""
+    radius = 0.012
+    vertices, faces = surfaces.wire(_course(), radius, sides)
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None, threads=2)
+    assert_sound(result, faces)
+    assert len(result.quads) < 1.1 * quads
+    edge = np.sqrt(2 * np.pi * radius * 4 / quads)
+    assert hybrid_quad.surface_distances(vertices, result.vertices, result.quads).max() < 3 * edge
+    assert scaled_jacobian(result.vertices, result.quads).mean() > 0.8
+
+
+def test_what_is_cut_short_is_told_with_its_place():
+    length = 1.2
+    vertices, faces = surfaces.horned_sphere(length, 0.04)
+
+    def told(quads):
+        warnings = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None).report["warnings"]
+        return [warning for warning in warnings if "cut short" in warning]
+
+    assert told(600) == []
+    (warning,) = told(60)
+    place = [float(number) for number in re.search(r"at \((.*?)\)", warning).group(1).split(", ")]
+    np.testing.assert_allclose(place, [0, 0, 1 + length], atol=0.2)
 
 
 @pytest.mark.parametrize(("tube", "quads"), [(0.2, 40), (0.1, 40), (0.05, 100)])

@@ -59,6 +59,30 @@ def sphere(n: int = 8) -> tuple[np.ndarray, np.ndarray]:
     return vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces
 
 
+def wire(course: np.ndarray, radius: float, sides: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """A closed tube of triangles along a polyline (#points x 3), flat at both ends."""
+    along = np.gradient(course, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    turn = 2 * np.pi * np.arange(sides) / sides
+    across = np.cross(along[0], [0.3, 0.5, 0.8])
+    rings = []
+    for point, direction in zip(course, along, strict=True):
+        across = across - direction * (across @ direction)
+        across = across / np.linalg.norm(across)
+        rings.append(
+            point + radius * (np.outer(np.cos(turn), across) + np.outer(np.sin(turn), np.cross(direction, across)))
+        )
+    next_one = np.roll(np.arange(sides), -1)
+    faces = []
+    for first in range(0, (len(course) - 1) * sides, sides):
+        a, b = first + np.arange(sides), first + next_one
+        faces += [np.stack([a, b, b + sides], axis=1), np.stack([a, b + sides, a + sides], axis=1)]
+    ends, last = len(course) * sides, (len(course) - 1) * sides
+    faces += [np.stack([np.full(sides, ends), next_one, np.arange(sides)], axis=1)]
+    faces += [np.stack([np.full(sides, ends + 1), last + np.arange(sides), last + next_one], axis=1)]
+    return np.concatenate([*rings, course[[0, -1]]]), np.concatenate(faces)
+
+
 def unrolled_sphere(around: int = 32, along: int = 16, *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """As programs make it from angles: quads, with a vertex for each meridian at the poles and the last meridian beside the first."""
     kind = np.float32 if single else np.float64

@@ -246,8 +246,11 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
   ComponentResult broken;
   if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context, broken);
   const ComponentPlan& plan = first ? first->plan : planned;
-  // Where lengths count, a plan with shorter ones is for more quads.
-  const double number = options.is_by_count() ? wanted : wanted * plan.quads / planned.quads;
+  // Where lengths count, a plan with shorter ones is for more quads; and a wire has four quads around, whatever the number.
+  const double planned_for = wanted * plan.quads / planned.quads;
+  const double number = !options.is_by_count()       ? planned_for
+                        : plan.thin_stretch.is_any() ? std::max(wanted, planned_for)
+                                                     : wanted;
   ComponentResult best = remesh_in_passes(plan, first ? std::optional(std::move(first->result)) : std::nullopt, number, whole,
                                           wishes, guides, options, budget, clock, context);
   keep_broken_promises(broken, best);

@@ -94,6 +94,14 @@ class ComponentRemesher {
     return recalled(plan_.part < 0 ? nullptr : context_.cache, {level, stage, plan_.part, plan_.quads}, make);
   }
 
+  /// Edges of the working surface have to be short beside the shorter sides of quads.
+  std::vector<double> lengths_across() const {
+    std::vector<double> lengths = plan_.target;
+    if (plan_.thin_stretch.is_any())
+      for (double& length : lengths) length = plan_.thin_stretch.across(length);
+    return lengths;
+  }
+
   void prepare() {
     if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
     struct Checked {
@@ -103,8 +111,11 @@ class ComponentRemesher {
     const WorkingSurfaceOptions surface_options = working_surface_options(wishes_, plan_.quads, !plan_.guides.empty());
     Checked checked = clock_.measure("working surface", [&] {
       return recalled_for_plan(StageCache::Level::kPlan, "working surface", [&] {
-        Checked made{build_working_surface(*plan_.index, plan_.features, plan_.target, surface_options,
-                                           context_.in_stage("working surface", 0, 0.2)), {}};
+        Checked made{build_working_surface(*plan_.index, plan_.features, lengths_across(), surface_options,
+                                           context_.in_stage("working surface", 0, 0.2)),
+                     {}};
+        if (plan_.thin_stretch.is_any())
+          for (double& length : made.surface.target_length) length = plan_.thin_stretch.with_across(length);
         made.violations = violations_of(made.surface, mesh_, plan_.features);
         return made;
       });
@@ -130,7 +141,7 @@ class ComponentRemesher {
       return recalled_for_plan(StageCache::Level::kField, "frame field", [&] {
         const FrameFieldOptions o = field_options(surface_, wishes_, options_);
         Solved made{solve_frame_field(surface_, o, context), direction_weights(o), {}};
-        made.stretch = stretch_of(surface_, made.unit, wishes_, options_);
+        made.stretch = stretch_of(surface_, made.unit, wishes_, options_, plan_.thin_stretch);
         return made;
       });
     });

@@ -62,7 +62,8 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   improve_.agreement = most_that_squares_pass(plan.mesh, whole, improve_.target_length);
   improve_.least_agreement = least_agreement(whole);
   improve_.guides = &guides_;
-  if (wishes.most_stretch > 1) improve_.aspect_power = 1;
+  if (wishes.most_stretch > 1 || plan.thin_stretch.is_any())
+    improve_.aspect_power = 1;
   else if (!wishes.density.empty()) improve_.aspect_power = kAspectOfSizes;
   // What curvature, a chord error or frames ask for is held less firmly than what somebody painted: shape is worth more.
   if (!options.density.empty() && wishes.most_stretch <= 1) {

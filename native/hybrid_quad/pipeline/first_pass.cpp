@@ -76,41 +76,51 @@ class FirstPasses {
     if (count == 1) return std::nullopt;
     int made = 0;
     if (very_many) {
-      make(trials[0], clock_, context.in_stage(context.stage, 0, 1.0 / count));
+      make_alone(trials[0], context.in_stage(context.stage, 0, 1.0 / count));
       if (trials[0].distance <= kNear) return std::move(trials[0]);
       made = 1;
     }
     make_side_by_side(trials, made, context);
-    return best_of(trials, kBetter);
+    Trial* best = best_of(trials, kBetter);
+    return best ? std::optional(std::move(*best)) : std::nullopt;
   }
 
   /// \param first  the pass so far, if there is one
-  /// \returns the best of it and of others, where there are thin parts and quads end short of the surface (docs/decisions/0052)
+  /// \returns the best of it and of others, where there are thin parts and quads end short of the surface (docs/decisions/0052, 0053)
   std::optional<Trial> with_room_for_thin_parts(std::optional<Trial> first, const RunContext& context) {
-    constexpr double kFar = 1.25, kNearer = 0.8;  // edges, and a part of what it was
-    constexpr double kHeld = 1.3;  // times the number: where features hold so many, parts have no room for more
-    if (planned_.thin_places->empty()) return first;
+    constexpr double kEven = 0.9, kNotCrowded = 0.7;  // shapes
+    const bool has_thin_parts = !planned_.thin_places->empty();
+    if (!has_thin_parts && !is_wire(*planned_.index, planned_.length, context)) return first;
     if (!first) {
       first.emplace(planned_);
-      make(*first, clock_, context.in_stage(context.stage, 0, 0.5));
+      make_alone(*first, context.in_stage(context.stage, 0, 0.5));
     }
-    if (first->quads_for_each_wanted() > kHeld) return first;
-    const RunContext measuring = context.in_stage("quality", 0.5, 0.5);
-    const double farthest = largest_distance_in_edges(*first, measuring);
-    if (farthest <= kFar) return first;
-    std::vector<Trial> others = with_thin_parts_shorter(first->pass.plan, context);
-    make_side_by_side(others, 0, context.in_stage(context.stage, 0.5, 1));
-    std::vector<Trial> trials{std::move(*first)};
-    for (Trial& other : others)
-      if (other.error || largest_distance_in_edges(other, measuring) <= kNearer * farthest) trials.push_back(std::move(other));
-    return best_of(trials, 0);
+    double farthest = largest_distance_in_edges(*first, context.in_stage("quality", 0.5, 0.5));
+    const double shape = first->error ? -1 : mean_shape(first->pass.result.mesh);
+    if (farthest <= kFar && shape >= kEven && first->quads_for_each_wanted() <= kHeld) return first;
+    const ComponentPlan plan = first->pass.plan;
+    const ThinTubes tubes = thin_tubes(*plan.index, plan.length, context);
+    if (is_wire(tubes)) {
+      const bool is_lost = farthest > kFar || first->quads_for_each_wanted() > kHeld;
+      std::vector<Trial> longer = with_parts_longer(plan, tubes, is_lost ? 2 : 1, context);
+      if (take_nearer(*first, farthest, std::move(longer), context.in_stage(context.stage, 0.5, 0.7))) return first;
+    }
+    if (farthest <= kFar || !has_thin_parts || first->quads_for_each_wanted() > kHeld) return first;
+    take_nearer(*first, farthest, with_parts_shorter(plan, context), context.in_stage(context.stage, 0.7, 0.9));
+    if (!is_wire(tubes) && farthest > kFar && shape > kNotCrowded)
+      take_nearer(*first, farthest, with_parts_longer(plan, tubes, 2, context), context.in_stage(context.stage, 0.9, 1));
+    return first;
   }
 
  private:
-  std::vector<Trial> with_thin_parts_shorter(const ComponentPlan& plan, const RunContext& context) const {
+  static constexpr double kHeld = 1.8;  ///< times the number: where features hold so many quads, parts have no room for more
+  static constexpr double kFar = 1.25;  ///< edges: parts are lost
+  static constexpr double kFirm =
+      1e-3;  ///< curl weight; else sizes give way to integrable frames, and two quads go around where four were planned
+  static constexpr double kMany = 1.3;  ///< times the quads, which can be settled; a lost limb can't
+
+  std::vector<Trial> with_parts_shorter(const ComponentPlan& plan, const RunContext& context) const {
     constexpr double kGrowths[] = {1.5, 2.5};
-    constexpr double kFirm = 1e-3;  // else sizes give way to integrable frames, and two quads go around where four were planned
-    constexpr double kMany = 1.3;  // which can be settled; a lost limb can't
     std::vector<Trial> trials;
     for (const double growth : kGrowths) {
       Trial trial(hybrid_quad::with_room_for_thin_parts(plan, growth, options_.is_by_count(), context));
@@ -120,6 +130,45 @@ class FirstPasses {
       trials.push_back(std::move(trial));
     }
     return trials;
+  }
+
+  /// None where others say how long quads are to be, or how much longer than wide.
+  std::vector<Trial> with_parts_longer(const ComponentPlan& plan, const ThinTubes& tubes, int most,
+                                       const RunContext& context) const {
+    constexpr double kGrowths[] = {1.5, 1.0};
+    std::vector<Trial> trials;
+    if (options_.anisotropy > 1 || !wishes_.corner_frames.empty() || !wishes_.density.empty()) return trials;
+    for (const double growth : kGrowths) {
+      if (static_cast<int>(trials.size()) == most) break;
+      std::optional<ComponentPlan> long_quads = with_long_quads(plan, tubes, growth, options_.is_by_count(), context);
+      if (!long_quads || (!trials.empty() && trials.back().pass.plan.target == long_quads->target)) continue;
+      Trial& trial = trials.emplace_back(*std::move(long_quads));
+      trial.curl_weight = kFirm;
+      trial.most_quads = kMany;
+    }
+    return trials;
+  }
+
+  /// Makes passes, and keeps the best of them and of the one so far, of which the surface is nowhere as far.
+  /// \param farthest  of the one so far, in edges; gets that of the best  \returns whether it is another
+  bool take_nearer(Trial& so_far, double& farthest, std::vector<Trial> others, const RunContext& context) {
+    constexpr double kNearer = 0.8;
+    make_side_by_side(others, 0, context);
+    const double enough = farthest > kFar ? kNearer * farthest : kFar;
+    const auto distance = [&](const Trial& trial) { return largest_distance_in_edges(trial, context.in_stage("quality", 1, 1)); };
+    std::vector<Trial> trials;
+    trials.push_back(std::move(so_far));
+    for (Trial& other : others)
+      if (distance(other) <= enough) trials.push_back(std::move(other));
+    // What far too many quads show is lost with them.
+    const bool is_vain = !trials[0].error && trials[0].quads_for_each_wanted() > kHeld;
+    Trial* best = best_of(trials, 0);
+    for (Trial& trial : trials)
+      if (is_vain && best == trials.data() && !trial.error && !trial.has_far_too_many()) best = &trial;
+    const bool is_other = best != nullptr && best != trials.data();
+    so_far = std::move(is_other ? *best : trials.front());
+    if (is_other) farthest = distance(so_far);
+    return is_other;
   }
 
   double largest_distance_in_edges(const Trial& trial, const RunContext& context) const {
@@ -134,6 +183,16 @@ class FirstPasses {
     side_by_side(left, context,
                  [&](int i, const RunContext& each) { make(trials[made + i], clocks[i], progress.context_of(i, each)); });
     for (const StageClock& one : clocks) clock_.add(one);
+    for (int i = made; i < count; ++i) note(trials[i]);
+  }
+
+  void make_alone(Trial& trial, const RunContext& context) {
+    make(trial, clock_, context);
+    note(trial);
+  }
+
+  void note(const Trial& trial) {
+    if (trial.error) record_broken_promise(*trial.error, broken_.repairs, broken_.warnings);
   }
 
   void make(Trial& trial, StageClock& clock, const RunContext& context) const {
@@ -150,15 +209,12 @@ class FirstPasses {
   }
 
   /// \param allowance  of the score, for each that comes later
-  std::optional<Trial> best_of(std::vector<Trial>& trials, double allowance) {
+  /// \returns null where none has a result
+  static Trial* best_of(std::vector<Trial>& trials, double allowance) {
     Trial* best = nullptr;
-    for (Trial& trial : trials) {
-      if (trial.error)
-        record_broken_promise(*trial.error, broken_.repairs, broken_.warnings);
-      else if (!best || (trial.score() >= best->score() - allowance && !trial.has_far_too_many()))
-        best = &trial;
-    }
-    return best ? std::optional(std::move(*best)) : std::nullopt;
+    for (Trial& trial : trials)
+      if (!trial.error && (!best || (trial.score() >= best->score() - allowance && !trial.has_far_too_many()))) best = &trial;
+    return best;
   }
 
   const ComponentPlan& planned_;
@@ -179,7 +235,7 @@ std::optional<FirstPass> first_pass_by_trial(const ComponentPlan& planned, const
   FirstPasses passes(planned, whole, wishes, guides, options, clock, broken);
   std::optional<Trial> best = passes.with_fewer_or_all_features(context.in_stage(context.stage, 0, 0.8));
   best = passes.with_room_for_thin_parts(std::move(best), context.in_stage(context.stage, best ? 0.8 : 0, 0.9));
-  return best ? std::optional(std::move(best->pass)) : std::nullopt;
+  return best && !best->error ? std::optional(std::move(best->pass)) : std::nullopt;
 }
 
 }  // namespace hybrid_quad

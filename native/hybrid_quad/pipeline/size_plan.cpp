@@ -268,6 +268,38 @@ ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_gr
   return plan;
 }
 
+std::optional<ComponentPlan> with_long_quads(const ComponentPlan& plan, const ThinTubes& tubes, double most_growth,
+                                             bool is_by_count, const RunContext& context) {
+  constexpr double kMostStretch = 24, kMostOfWires = 4;
+  constexpr double kLonger[] = {1, 1.5, 2, 3, 4, 6};  // times the usual length
+  constexpr double kRatios[] = {0.05, 0.1, 0.2, 0.3};  // of the usual length: the shortest
+  const auto planned = [&](double longer, double ratio) {
+    ComponentPlan long_quads = plan;
+    long_quads.part = -1;
+    long_quads.length *= longer;
+    for (double& length : long_quads.unlimited) length *= longer;
+    long_quads.thin_stretch = {long_quads.length, kMostStretch};
+    long_quads.thin_places = tubes.places;
+    for (ThinPlace& place : *long_quads.thin_places) place.length = long_quads.thin_stretch.with_across(place.length);
+    long_quads.thin_ratio = ratio / longer;
+    plan_lengths_again(long_quads, context);
+    return long_quads;
+  };
+  std::optional<ComponentPlan> least;
+  for (const double longer : kLonger) {
+    for (const double ratio : kRatios) {
+      ComponentPlan tried = planned(longer, ratio);
+      if (tried.quads <= most_growth * plan.quads) {
+        if (is_by_count) scale_plan(tried, plan.quads / tried.quads);
+        return tried;
+      }
+      if (!least || tried.quads < least->quads) least = std::move(tried);
+    }
+    if (!is_by_count) break;
+  }
+  return is_wire(tubes) && least->quads <= kMostOfWires * plan.quads ? std::move(least) : std::nullopt;
+}
+
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
   return with_fewer_features(plan, mirror_planes, context, [&](ComponentPlan& without) { return make_room_for_shapes(without, context); });
 }
@@ -295,6 +327,7 @@ std::optional<ComponentPlan> without_exact_wishes(const ComponentPlan& plan, con
 
 void scale_plan(ComponentPlan& plan, double quads_factor) {
   for (double& length : plan.target) length /= std::sqrt(quads_factor);
+  plan.thin_stretch.length /= std::sqrt(quads_factor);
   plan.quads *= quads_factor;
 }
 
@@ -303,6 +336,7 @@ ComponentPlan refined_plan(const ComponentPlan& plan, double quads_factor, bool 
   ComponentPlan finer = plan;
   finer.part = -1;
   const double factor = 1 / std::sqrt(quads_factor);
+  finer.thin_stretch.length *= factor;
   for (std::size_t v = 0; v < finer.target.size(); ++v)
     finer.target[v] = factor * (as_needed ? std::min(plan.target[v], plan.needed[v]) : plan.target[v]);
   if (!limits.empty()) {

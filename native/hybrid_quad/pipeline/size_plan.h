@@ -12,6 +12,7 @@
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/wishes.h"
 #include "hybrid_quad/sizing/feature_size.h"
+#include "hybrid_quad/sizing/thin_stretch.h"
 
 namespace hybrid_quad {
 
@@ -34,6 +35,7 @@ struct ComponentPlan {
   std::vector<double> density;  ///< #V asked lengths are shorter by, or empty: 1
   double least_ratio = 0, thin_ratio = 0;  ///< see FeatureSizeOptions
   std::optional<std::vector<ThinPlace>> thin_places;  ///< once they have been looked for
+  ThinStretch thin_stretch;     ///< of quads on thin parts
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
@@ -75,6 +77,13 @@ ComponentPlan with_corners(const ComponentPlan& plan, const std::vector<int>& co
 /// \param is_by_count  for as many quads as before: other edges get longer
 ComponentPlan with_room_for_thin_parts(const ComponentPlan& plan, double most_growth, bool is_by_count,
                                        const RunContext& context);
+
+/// The plan with four quads around thin tubes and tips that are longer along these than around (docs/decisions/0053), and others as long as
+/// that needs. For as many quads as before where that can be; where not, and nearly all is tubes, for up to four times as many.
+/// \param tubes  of the plan  \param most_growth  times as many quads as planned may be needed before others are made longer for it
+/// \returns none where even that is not enough
+std::optional<ComponentPlan> with_long_quads(const ComponentPlan& plan, const ThinTubes& tubes, double most_growth,
+                                             bool is_by_count, const RunContext& context);
 
 /// The plan for as many quads with fewer features by angle, where these are cramped: more than a few are shorter than quads, or some
 /// gave way to the number already. Else the same plan.

@@ -81,6 +81,16 @@ Eigen::Matrix3d stretch_along_curvature(const PrincipalCurvature& curvature, dou
   return std::exp(-half) * u * u.transpose() + std::exp(half) * v * v.transpose();
 }
 
+/// By that ratio along what bends clearly less, as a tube does along its axis, also where it turns; less so where it bends alike, as a tip does.
+Eigen::Matrix3d stretch_along_tube(const PrincipalCurvature& curvature, double ratio, const Vector3& u, const Vector3& v) {
+  constexpr double kClear = 0.3;  // difference of the curvatures over their sum
+  const double strong = std::abs(curvature.strong), weak = std::abs(curvature.weak);
+  const double clear = strong + weak > 0 ? std::min(1.0, (strong - weak) / (strong + weak) / kClear) : 0;
+  const double along_u = curvature.direction.dot(u), along_v = curvature.direction.dot(v);
+  const double half = 0.5 * std::log(ratio) * clear * (along_u * along_u - along_v * along_v);
+  return std::exp(-half) * u * u.transpose() + std::exp(half) * v * v.transpose();
+}
+
 }  // namespace
 
 GuideMap guides_on(const Wishes& wishes, const TriangleMesh& finer) {
@@ -119,9 +129,9 @@ std::vector<double> direction_weights(const FrameFieldOptions& field) {
 }
 
 std::vector<Eigen::Matrix3d> stretch_of(const WorkingSurface& surface, const FrameField& unit_frames, const Wishes& wishes,
-                                        const RemeshOptions& options) {
+                                        const RemeshOptions& options, const ThinStretch& thin_stretch) {
   std::vector<Eigen::Matrix3d> stretch;
-  if (wishes.corner_frames.empty() && !(options.anisotropy > 1)) return stretch;
+  if (wishes.corner_frames.empty() && !(options.anisotropy > 1) && !thin_stretch.is_any()) return stretch;
   const int faces = surface.mesh.face_count();
   stretch.assign(faces, Eigen::Matrix3d::Zero());
   if (!wishes.corner_frames.empty()) {
@@ -138,6 +148,12 @@ std::vector<Eigen::Matrix3d> stretch_of(const WorkingSurface& surface, const Fra
     return stretch;
   }
   const std::vector<PrincipalCurvature> curvature = principal_curvatures(surface);
+  if (thin_stretch.is_any()) {
+    for (int f = 0; f < faces; ++f)
+      stretch[f] =
+          stretch_along_tube(curvature[f], thin_stretch.ratio(surface.target_length[f]), unit_frames.du[f], unit_frames.dv[f]);
+    return stretch;
+  }
   for (int f = 0; f < faces; ++f)
     stretch[f] = stretch_along_curvature(curvature[f], surface.target_length[f], options.anisotropy, unit_frames.du[f],
                                          unit_frames.dv[f]);

@@ -8,6 +8,7 @@
 #include "hybrid_quad/mesh/surface_index.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/sizing/sizing.h"
+#include "hybrid_quad/sizing/thin_stretch.h"
 
 namespace hybrid_quad {
 
@@ -64,8 +65,8 @@ FrameFieldOptions field_options(const WorkingSurface& surface, const Wishes& wis
 std::vector<double> direction_weights(const FrameFieldOptions& field);
 
 /// How the unit frames are to be stretched: as the caller's frames are, or along the direction in which the surface bends
-/// less, by at most options.anisotropy. Areas stay. \return #F or empty, for SizingOptions
+/// less, by at most options.anisotropy, or on thin parts by what is planned there. Areas stay. \return #F or empty, for SizingOptions
 std::vector<Eigen::Matrix3d> stretch_of(const WorkingSurface& surface, const FrameField& unit_frames, const Wishes& wishes,
-                                        const RemeshOptions& options);
+                                        const RemeshOptions& options, const ThinStretch& thin_stretch);
 
 }  // namespace hybrid_quad

@@ -14,7 +14,8 @@ constexpr double kOpposite = -0.3;  ///< cosine of the normals of two sides of a
 
 class ThicknessProbe {
  public:
-  ThicknessProbe(const SurfaceIndex& index, double reach) : index_(index), reach_(reach) {}
+  ThicknessProbe(const SurfaceIndex& index, double reach, bool with_few_sides)
+      : index_(index), reach_(reach), with_few_sides_(with_few_sides) {}
 
   /// Radius of the ball inside that touches at p, or `largest` where no opposite side is nearer.
   double radius(const Vector3& p, const Vector3& normal, double largest) const {
@@ -27,9 +28,8 @@ class ThicknessProbe {
       inside.within = kTouches * r;
       const SurfacePoint q = index_.nearest(centre, inside);
       if (q.face < 0) break;
-      if (index_.mesh().normal(q.face).dot(normal) > kOpposite) return largest;
       const double height = normal.dot(p - q.position);
-      if (height <= 0) return largest;
+      if (index_.mesh().normal(q.face).dot(normal) > kOpposite || height <= 0) return with_few_sides_ ? r : largest;
       r = std::min(r, (p - q.position).squaredNorm() / (2 * height));
     }
     return r;
@@ -56,6 +56,7 @@ class ThicknessProbe {
 
   const SurfaceIndex& index_;
   double reach_;
+  bool with_few_sides_;
 };
 
 Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
@@ -69,16 +70,17 @@ Vector3 vertex_normal(const TriangleMesh& mesh, int v) {
   return sum.normalized();
 }
 
-}  // namespace
-
-std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, const RunContext& context) {
+double probes_for(const TriangleMesh& mesh, double length) {
   constexpr double kProbesPerQuad = 4, kLeastProbes = 1000;
-  const TriangleMesh& mesh = index.mesh();
   const double quads = mesh.total_area() / (length * length);
-  const double probes = std::max(kLeastProbes, kProbesPerQuad * quads);
+  return std::max(kLeastProbes, kProbesPerQuad * quads);
+}
+
+ThinTubes probed(const SurfaceIndex& index, double length, double probes, bool with_few_sides, const RunContext& context) {
+  const TriangleMesh& mesh = index.mesh();
   const int stride = std::max(1, static_cast<int>(mesh.vertex_count() / probes));
   const double enough = 2 * length / kPi;  // a circle of this radius has room for four quads
-  const ThicknessProbe probe(index, 0.9 * length);
+  const ThicknessProbe probe(index, 0.9 * length, with_few_sides);
   const auto radius_at = [&](int v) {
     if (mesh.outgoing(v) < 0) return enough;
     const Vector3 normal = vertex_normal(mesh, v);
@@ -91,10 +93,31 @@ std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, con
   parallel_chunks(static_cast<int>(radius.size()), context, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) radius[i] = radius_at(i * stride);
   });
-  std::vector<ThinPlace> places;
+  ThinTubes tubes;
   for (std::size_t i = 0; i < radius.size(); ++i)
-    if (radius[i] < enough) places.push_back({static_cast<int>(i) * stride, radius[i] * kPi / 2});
-  return places;
+    if (radius[i] < enough) tubes.places.push_back({static_cast<int>(i) * stride, radius[i] * kPi / 2});
+  tubes.share = static_cast<double>(tubes.places.size()) / static_cast<double>(radius.size());
+  return tubes;
+}
+
+}  // namespace
+
+std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, const RunContext& context) {
+  return probed(index, length, probes_for(index.mesh(), length), false, context).places;
+}
+
+ThinTubes thin_tubes(const SurfaceIndex& index, double length, const RunContext& context) {
+  return probed(index, length, probes_for(index.mesh(), length), true, context);
+}
+
+bool is_wire(const SurfaceIndex& index, double length, const RunContext& context) {
+  constexpr double kFew = 64;
+  return is_wire(probed(index, length, kFew, true, context));
+}
+
+bool is_wire(const ThinTubes& tubes) {
+  constexpr double kNearlyAll = 0.7;
+  return tubes.share >= kNearlyAll;
 }
 
 }  // namespace hybrid_quad

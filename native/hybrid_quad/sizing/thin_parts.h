@@ -18,4 +18,16 @@ struct ThinPlace {
 /// \param length  asked quad edge length (scene units)
 std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, const RunContext& context);
 
+struct ThinTubes {
+  std::vector<ThinPlace> places;
+  double share = 0;  ///< of the vertices looked at
+};
+
+/// The same also where tubes have few sides, whose balls touch sides next to the one behind.
+ThinTubes thin_tubes(const SurfaceIndex& index, double length, const RunContext& context);
+
+/// Whether nearly all of a surface is such tubes, by few vertices.
+bool is_wire(const SurfaceIndex& index, double length, const RunContext& context);
+bool is_wire(const ThinTubes& tubes);
+
 }  // namespace hybrid_quad
