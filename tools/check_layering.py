@@ -28,7 +28,7 @@ PUBLIC_HEADERS = {
     "periodic_field": {"grid_measure.h", "narrow_strips.h", "phase_graph.h"},
     "singular_patches": {"patch_quads.h"},
     "features": {"crease_normals.h", "curve_counts.h", "features_with_room.h"},
-    "sizing": {"asked_lengths.h", "chord_lengths.h", "feature_size.h"},
+    "sizing": {"asked_lengths.h", "chord_lengths.h", "feature_size.h", "thin_stretch.h"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 FORBIDDEN_IMPORTS = {

@@ -157,7 +157,7 @@ def _course() -> np.ndarray:
 
 @pytest.mark.parametrize(("sides", "quads"), [(4, 100), (6, 100), (8, 60), (8, 200), (24, 100)])
 def test_wires_thinner_than_quads_keep_their_course(sides, quads):
-    """With quads as long as wide there are too few for four around, and nothing was left but a crumpled sheet (docs/decisions/0053)."""
+    """As squares there are too few for four around, and nothing was left but a crumpled sheet (docs/decisions/0053)."""
     radius = 0.012
     vertices, faces = surfaces.wire(_course(), radius, sides)
     result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=None, threads=2)
