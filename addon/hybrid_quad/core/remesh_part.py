@@ -35,7 +35,7 @@ from .strokes import Stroke, checked_strokes
 
 STAGE = "part"  # as errors call what is done here
 
-_NUDGE = 1e-9  # of the diagonal: how far the banks of a cut are apart, so that nobody takes them for a crack to close
+_NUDGE = 2e-6  # of the diagonal: how far the banks of a cut are apart; nearer ones are taken for a crack and closed
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
