@@ -138,7 +138,8 @@ class FirstPasses {
     constexpr double kGrowths[] = {1.5, 1.0};
     std::vector<Trial> trials;
     constexpr double kFewest = 16;  // four rings
-    if (plan.quads < kFewest) return trials;
+    constexpr double kMost = 4000;  // with more, what is lost is small, and passes take long
+    if (plan.quads < kFewest || plan.quads > kMost) return trials;
     if (options_.anisotropy > 1 || !wishes_.corner_frames.empty() || !wishes_.density.empty()) return trials;
     for (const double growth : kGrowths) {
       if (static_cast<int>(trials.size()) == most) break;
