@@ -18,16 +18,19 @@ struct ThinPlace {
 /// \param length  asked quad edge length (scene units)
 std::vector<ThinPlace> thin_places(const SurfaceIndex& index, double length, const RunContext& context);
 
+/// Thin places and how much of a surface they are.
 struct ThinTubes {
   std::vector<ThinPlace> places;
   double share = 0;  ///< of the vertices looked at
 };
 
-/// The same also where tubes have few sides, whose balls touch sides next to the one behind.
+/// As thin_places(), and where tubes have few sides, whose balls touch sides next to the one behind (docs/decisions/0053).
+/// \param length  asked quad edge length (scene units)
 ThinTubes thin_tubes(const SurfaceIndex& index, double length, const RunContext& context);
 
-/// Whether nearly all of a surface is such tubes, by few vertices.
-bool is_wire(const SurfaceIndex& index, double length, const RunContext& context);
+/// Whether nearly all of a surface is such tubes.
 bool is_wire(const ThinTubes& tubes);
+/// The same, by few of its vertices. \param length  asked quad edge length (scene units)
+bool is_wire(const SurfaceIndex& index, double length, const RunContext& context);
 
 }  // namespace hybrid_quad
