@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "hybrid_quad/base/errors.h"
+#include "hybrid_quad/features/feature_gaps.h"
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/features/narrow_facets.h"
 #include "support/meshes.h"
 
 namespace hybrid_quad {
@@ -249,6 +252,130 @@ TEST(Features, FoldsThatFenceInLessThanAQuadAreNone) {
   EXPECT_EQ(features_inside(raised([&](long x, long y) { return in_the_middle(x, y) && (x + y) % 2 ? 0.7 : 0.0; })), 0);
   // A plateau of two quads by two.
   EXPECT_GT(features_inside(raised([&](long x, long y) { return in_the_middle(x, y) ? 2.0 : 0.0; })), 0);
+}
+
+/// A sheet with this profile in x and z, four long in y.
+TriangleMesh extruded(const std::vector<std::array<double, 2>>& profile) {
+  const int cells = static_cast<int>(profile.size()) - 1, rows = 2;
+  const TriangleMesh grid = test::flat_grid(cells, rows, cells, 4);
+  std::vector<Vector3> positions = grid.positions();
+  for (Vector3& p : positions) {
+    const auto& at = profile[std::lround(p.x())];
+    p = {at[0], p.y(), at[1]};
+  }
+  return TriangleMesh(positions, grid.faces());
+}
+
+/// Lengths of the curves that are not on the boundary.
+std::vector<double> inner_lengths(const TriangleMesh& m, const FeatureGraph& g) {
+  std::vector<double> lengths;
+  for (const auto& curve : g.curves) {
+    if (curve.boundary) continue;
+    lengths.push_back(0);
+    for (std::size_t i = 1; i < curve.vertices.size(); ++i)
+      lengths.back() += (m.position(curve.vertices[i]) - m.position(curve.vertices[i - 1])).norm();
+  }
+  return lengths;
+}
+
+TEST(Features, ACreaseWithSliversAlongItIsOneLine) {
+  // Two plates at a right angle; where they meet, strips as long as they are, a hundredth of a quad wide, fold this way and that.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> off(-0.01, 0.01);
+  for (const bool is_bent : {true, false}) {
+    std::vector<std::array<double, 2>> profile{{-2, 0}, {-0.02, 0}};
+    for (int i = 0; i < 9; ++i) profile.push_back({off(random), off(random)});
+    if (is_bent) profile.insert(profile.end(), {{0, -0.02}, {0, -2}});
+    else profile.insert(profile.end(), {{0.02, 0}, {2, 0}});
+    const TriangleMesh m = extruded(profile);
+    FeatureOptions options;
+    EXPECT_GT(inner_lengths(m, detect(m, options)).size(), 3u);
+    options.minimum_length = 3;
+    const std::vector<double> lengths = inner_lengths(m, detect(m, options));
+    EXPECT_EQ(lengths.size(), is_bent ? 1u : 0u);
+    for (const double length : lengths) EXPECT_NEAR(length, 4, 1e-9);
+  }
+}
+
+TEST(Features, ARoundOfNarrowFacetsIsNoCrease) {
+  // A quarter of a cylinder of a tenth of a quad's radius in facets of 15 degrees, each narrower than what counts for nothing.
+  std::vector<std::array<double, 2>> profile{{-2, 0.1}};
+  for (int i = 0; i <= 6; ++i) {
+    const double turn = i * 15 * 3.14159265358979323846 / 180;
+    profile.push_back({0.1 * std::sin(turn), 0.1 * std::cos(turn)});
+  }
+  profile.push_back({0.1, -2});
+  const TriangleMesh m = extruded(profile);
+  FeatureOptions options;
+  options.minimum_length = 3;
+  EXPECT_TRUE(inner_lengths(m, detect(m, options)).empty());
+}
+
+TEST(NarrowFacets, TakeTheNormalsBesideTheirLongestBorder) {
+  // A step of a fiftieth between two plates that are not quite parallel: the wall has a longer border with neither, the first counts.
+  const TriangleMesh m = extruded({{-1, 0}, {0, 0}, {0, 0.02}, {1, 0.1}});
+  std::vector<Vector3> normals;
+  for (int f = 0; f < m.face_count(); ++f) normals.push_back(m.normal(f));
+  std::vector<char> is_inner(m.halfedge_count());
+  for (int h = 0; h < m.halfedge_count(); ++h) is_inner[h] = !m.is_boundary(h);
+  const auto is_wall = [&](int f) { return std::abs(m.normal(f).x()) > 0.9; };
+  const std::vector<Vector3> seen = normals_beside_narrow_facets(m, normals, is_inner, 0.2, 0.7, 0.05);
+  const std::vector<Vector3> too_wide = normals_beside_narrow_facets(m, normals, is_inner, 0.2, 0.7, 0.01);
+  for (int f = 0; f < m.face_count(); ++f) {
+    EXPECT_EQ(too_wide[f], normals[f]);
+    if (is_wall(f)) EXPECT_GT(seen[f].z(), 0.99);
+    else EXPECT_EQ(seen[f], normals[f]);
+  }
+}
+
+TEST(FeatureGaps, AreClosedByTheShortestWayUnlessTheEndsAreJoinedAnyway) {
+  const int n = 10;
+  const TriangleMesh m = test::flat_grid(n, n, n, n);
+  const auto on_line = [&](int h, double from, double to) {
+    const Vector3 a = m.position(m.from(h)), b = m.position(m.to(h));
+    return std::abs(a.x() - 5) < 0.1 && std::abs(b.x() - 5) < 0.1 && std::min(a.y(), b.y()) > from - 0.1 && std::max(a.y(), b.y()) < to + 0.1;
+  };
+  std::vector<char> line(m.halfedge_count(), 0);
+  for (int h = 0; h < m.halfedge_count(); ++h) line[h] = on_line(h, 0, 4) || on_line(h, 6, 10);
+  EXPECT_TRUE(ways_over_gaps(m, line, 1.9, RunContext{}).empty());
+  const std::vector<int> way = ways_over_gaps(m, line, 2.1, RunContext{});
+  EXPECT_EQ(way.size(), 2u);
+  for (const int h : way) EXPECT_TRUE(on_line(h, 4, 6));
+  // One end goes on to the boundary, as far as the other is joined to it already.
+  for (int h = 0; h < m.halfedge_count(); ++h) line[h] = on_line(h, 0, 1);
+  EXPECT_TRUE(ways_over_gaps(m, line, 1.1, RunContext{}).empty());
+}
+
+TEST(Features, AZigzagIsNoCornerSeenFromFarther) {
+  const int n = 20;
+  const TriangleMesh m = test::flat_grid(n, n, n, n);
+  // Along y = 10 to the middle, one cell up, and on: a jog. Then a corner: along x = 10 down from there.
+  const auto chain = [&](const std::vector<Vector3>& points) {
+    std::vector<char> is_feature(m.halfedge_count(), 0);
+    for (std::size_t i = 1; i < points.size(); ++i)
+      for (int h = 0; h < m.halfedge_count(); ++h) {
+        const Vector3 along = points[i] - points[i - 1];
+        const auto lies_on = [&](int v) {
+          const double t = (m.position(v) - points[i - 1]).dot(along) / along.squaredNorm();
+          return t > -1e-9 && t < 1 + 1e-9 && (m.position(v) - points[i - 1] - t * along).norm() < 1e-9;
+        };
+        if (lies_on(m.from(h)) && lies_on(m.to(h))) is_feature[h] = 1;
+      }
+    return is_feature;
+  };
+  const auto inner_corners = [&](const std::vector<Vector3>& points, double reach) {
+    CornerRule rule;
+    rule.reach = reach;
+    const FeatureGraph g = trace_features(m, chain(points), rule);
+    int count = 0;
+    for (int v = 0; v < m.vertex_count(); ++v) count += g.is_corner[v] && !m.is_boundary_vertex(v);
+    return count;
+  };
+  const std::vector<Vector3> jog{{0, 10, 0}, {10, 10, 0}, {10, 11, 0}, {20, 11, 0}}, corner{{0, 10, 0}, {10, 10, 0}, {10, 0, 0}};
+  EXPECT_EQ(inner_corners(jog, 0), 2);
+  EXPECT_EQ(inner_corners(jog, 4), 0);
+  EXPECT_EQ(inner_corners(corner, 0), 1);
+  EXPECT_EQ(inner_corners(corner, 4), 1);
 }
 
 TEST(Features, WeakEdgesBridgeAGapBetweenStrongOnes) {

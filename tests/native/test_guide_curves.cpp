@@ -139,10 +139,10 @@ Grid grid_with_chain(double begin, double end) {
   for (Vector3& p : grid.quads.positions) p /= widest;
   const auto on_chain = [&](const Vector3& p) { return std::abs(p.y() - 0.5) < 1e-9 && p.x() > begin - 1e-9 && p.x() < end + 1e-9; };
   std::vector<char> is_feature(grid.input.halfedge_count(), 0);
-  grid.after = trace_features(grid.input, is_feature, 100);
+  grid.after = trace_features(grid.input, is_feature);
   for (int h = 0; h < grid.input.halfedge_count(); ++h)
     is_feature[h] = on_chain(grid.input.position(grid.input.from(h))) && on_chain(grid.input.position(grid.input.to(h)));
-  grid.before = trace_features(grid.input, is_feature, 100);
+  grid.before = trace_features(grid.input, is_feature);
   std::map<std::array<int, 2>, int> curve;
   const auto input_vertex = [&](int v) {
     for (int u = 0; u < grid.input.vertex_count(); ++u)
@@ -222,7 +222,7 @@ FittedStroke fitted(const TriangleMesh& mesh, const GuideStroke& stroke, int edg
     const int a = embedded.mesh.from(h), b = embedded.mesh.to(h);
     is_feature[h] = on_stroke.count({std::min(a, b), std::max(a, b)}) > 0;
   }
-  FeatureGraph features = trace_features(embedded.mesh, is_feature, FeatureOptions{}.corner_angle);
+  FeatureGraph features = trace_features(embedded.mesh, is_feature);
   int chosen = 0;  // the boundary of a mesh has curves as well
   for (int h = 0; h < embedded.mesh.halfedge_count(); ++h)
     if (is_feature[h]) chosen = features.halfedge_curve[h];

@@ -232,7 +232,7 @@ TEST(SurfaceDistance, TwoQuadsMayShareADiagonal) {
 
 TEST(FeatureDistance, BoundaryOfASquare) {
   const TriangleMesh sheet = test::flat_grid(4, 4);
-  const FeatureGraph features = trace_features(sheet, std::vector<char>(sheet.halfedge_count(), 0), 100);
+  const FeatureGraph features = trace_features(sheet, std::vector<char>(sheet.halfedge_count(), 0));
   QuadMesh mesh = square_grid(4, 0);
   EXPECT_EQ(feature_distance(mesh, sheet, features, RunContext{}), 100.0);
   for (int i = 0; i < 4; ++i) {

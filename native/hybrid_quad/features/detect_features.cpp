@@ -2,11 +2,14 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/features/crease_clarity.h"
 #include "hybrid_quad/features/crease_normals.h"
+#include "hybrid_quad/features/feature_gaps.h"
 #include "hybrid_quad/features/features.h"
+#include "hybrid_quad/features/narrow_facets.h"
 #include "hybrid_quad/features/parting_angle.h"
 #include "hybrid_quad/features/rounds.h"
 #include "hybrid_quad/features/small_facets.h"
@@ -30,23 +33,26 @@ constexpr double kReachShare = 0.28;      ///< least reach of a set, of the mini
 
 class FeatureDetector {
  public:
-  FeatureDetector(const TriangleMesh& mesh, const std::vector<Vector3>& normals, const FeatureOptions& options)
-      : mesh_(mesh), normal_(normals), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
+  FeatureDetector(const TriangleMesh& mesh, std::vector<Vector3> normals, const FeatureOptions& options)
+      : mesh_(mesh), normal_(std::move(normals)), options_(options), marked_(mesh.halfedge_count(), 0), by_angle_(mesh.halfedge_count(), 0),
         weight_(mesh.halfedge_count(), 1.0) {}
 
   void mark_given_edges();
   void mark_by_angle(const RunContext& context);
+  void close_gaps(const RunContext& context);
   void continue_chains(const RunContext& context);
   void weigh_edges(const RunContext& context);
   void drop_noise();
   std::vector<char> result() const;
-  int rounds_left_out() const { return static_cast<int>(std::count(is_too_small_.begin(), is_too_small_.end(), 1)); }
+  int rounds_left_out() const { return narrow_rounds_ + static_cast<int>(std::count(is_too_small_.begin(), is_too_small_.end(), 1)); }
   double limit() const { return limit_; }  ///< degrees above which edges were taken by angle; 0: none were
 
  private:
+  void see_past_narrow_facets(const std::vector<int>& halfedges);
   void drop_short_sets();
   void drop_unclear_branches();
   void drop_loose_ends();
+  double quad() const { return kQuadShare * options_.minimum_length; }  ///< a quad's edge
   int opposite_or_self(int h) const { return mesh_.opposite(h) < 0 ? h : mesh_.opposite(h); }
   bool stands_for_edge(int h) const { return h <= opposite_or_self(h); }
   bool is_any(int h) const { return marked_[h] || by_angle_[h] || mesh_.is_boundary(h); }
@@ -74,12 +80,13 @@ class FeatureDetector {
   }
 
   const TriangleMesh& mesh_;
-  const std::vector<Vector3>& normal_;  ///< by face
+  std::vector<Vector3> normal_;  ///< by face
   const FeatureOptions& options_;
   std::vector<char> marked_, by_angle_;
   double limit_ = 0;
   Rounds rounds_;  ///< of the edges by angle
   std::vector<char> is_too_small_;  ///< by round
+  int narrow_rounds_ = 0;           ///< that only narrow facets showed
   std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
   double noise_share_ = 0;  ///< of the length of all edges by angle
 };
@@ -140,6 +147,28 @@ void FeatureDetector::mark_by_angle(const RunContext& context) {
   limit_ = options_.minimum_length > 0 ? parting_angle(edges, options_.sharp_angle) : options_.sharp_angle;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (edges[i].angle > limit_) set(by_angle_, halfedges[i], 1);
+  if (options_.minimum_length > 0) see_past_narrow_facets(halfedges);
+}
+
+/// Where slivers fold, all their edges are above the angle; a crease is what is above it without them too.
+/// \param halfedges  of edges that may be features by angle
+void FeatureDetector::see_past_narrow_facets(const std::vector<int>& halfedges) {
+  constexpr double kBend = 0.5;  // of the weak angle
+  constexpr double kNarrow = 0.03;
+  const Rounds rounds = find_rounds(mesh_, by_angle_, marked_);
+  std::vector<char> may_bend(mesh_.halfedge_count(), 0), is_left(rounds.length.size(), 0);
+  for (const int h : halfedges) set(may_bend, h, 1);
+  normal_ = normals_beside_narrow_facets(mesh_, normal_, may_bend, kBend * options_.weak_angle * kDegree, limit_ * kDegree, kNarrow * quad());
+  for (const int h : halfedges) {
+    set(by_angle_, h, angle(h) > limit_ * kDegree);
+    if (by_angle_[h] && rounds.of_halfedge[h] >= 0) is_left[rounds.of_halfedge[h]] = 1;
+  }
+  narrow_rounds_ = static_cast<int>(std::count(is_left.begin(), is_left.end(), 0));
+}
+
+void FeatureDetector::close_gaps(const RunContext& context) {
+  constexpr double kGap = 0.15;
+  for (const int h : ways_over_gaps(mesh_, result(), kGap * quad(), context)) set(by_angle_, h, 1);
 }
 
 int FeatureDetector::feature_degree(int v) const {
@@ -223,7 +252,7 @@ void FeatureDetector::weigh_edges(const RunContext& context) {
   rounds_ = find_rounds(mesh_, by_angle_, marked_);
   is_too_small_.assign(rounds_.length.size(), 0);
   const std::vector<char> barriers = result();
-  const std::vector<char> in_facet = small_facets(mesh_, normal_, barriers, kQuadShare * options_.minimum_length);
+  const std::vector<char> in_facet = small_facets(mesh_, normal_, barriers, quad());
   CreaseClarity clarity(mesh_, normal_, barriers);
   const double side = kSideShare * options_.minimum_length;
   for (int h = 0; h < mesh_.halfedge_count(); ++h) {
@@ -375,12 +404,15 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const std::vector<Vector3
   detector.mark_given_edges();
   detector.mark_by_angle(context);
   detector.continue_chains(context);
+  if (options.minimum_length > 0) detector.close_gaps(context);
   if (options.minimum_length > 0) {
     detector.weigh_edges(context);
     detector.drop_noise();
   }
   context.checkpoint(0.7);
-  FeatureGraph features = trace_features(mesh, detector.result(), options.corner_angle, options.corners);
+  CornerRule corners = corners_for_quads(kQuadShare * options.minimum_length);
+  corners.angle = options.corner_angle;
+  FeatureGraph features = trace_features(mesh, detector.result(), corners, options.corners);
   features.sharp_angle = detector.limit();
   features.rounds_left_out = detector.rounds_left_out();
   return features;

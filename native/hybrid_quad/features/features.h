@@ -29,6 +29,19 @@ struct FeatureGraph {
   bool is_feature(int h) const { return halfedge_curve[h] >= 0; }
 };
 
+/// Which vertex between two feature edges is a corner.
+struct CornerRule {
+  double angle = 100.0;  ///< degrees between the two, below which it may be one
+  /// Scene units: and only if the chain turns as sharply seen from so far away. What zigzags between slivers is none (docs/decisions/0055).
+  double reach = 0;
+};
+
+/// For quads of an edge length.
+inline CornerRule corners_for_quads(double length) {
+  constexpr double kReach = 0.1;
+  return {CornerRule{}.angle, kReach * length};
+}
+
 struct FeatureOptions {
   double sharp_angle = 40.0;     ///< degrees between face normals, more where it tells nothing apart (parting_angle.h); > 180 (or use_sharp_angle false) takes none
   bool use_sharp_angle = true;
@@ -38,7 +51,7 @@ struct FeatureOptions {
   /// that go around evenly, as the rims of holes, are none: two fifths are enough, and they are seen from half their radius away.
   /// 0: all above the sharp angle are kept.
   double minimum_length = 0.0;
-  double corner_angle = 100.0;   ///< degrees between consecutive edges of a curve below which its vertex is a corner
+  double corner_angle = CornerRule{}.angle;
   std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped
   std::vector<int> corners;      ///< vertices that are corners in any case, where a feature passes
 };
@@ -53,7 +66,7 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const FeatureOptions& opt
 
 /// Curves, corners and regions of a given set of feature half-edges. \param is_feature 3 #F, symmetric; boundary is added
 /// \param corners  vertices that are corners in any case, where a feature passes
-FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle,
+FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, const CornerRule& rule = {},
                             const std::vector<int>& corners = {});
 
 std::vector<std::string> violations_of(const FeatureGraph& features, const TriangleMesh& mesh);

@@ -41,20 +41,33 @@ Incidence incident_feature_edges(const TriangleMesh& mesh, const std::vector<cha
   return in;
 }
 
-bool turns_sharply(const TriangleMesh& mesh, int v, int edge_a, int edge_b, double max_cosine) {
-  const Vector3 a = mesh.position(other_end(mesh, edge_a, v)) - mesh.position(v);
-  const Vector3 b = mesh.position(other_end(mesh, edge_b, v)) - mesh.position(v);
-  return a.dot(b) > max_cosine * a.norm() * b.norm() && a.squaredNorm() > 0 && b.squaredNorm() > 0;
+/// The first vertex on a chain of features from v, over `edge`, that is at least so far from v, or the last before a junction.
+Vector3 ahead_of(const TriangleMesh& mesh, const Incidence& in, int v, int edge, double distance) {
+  const int start = v;
+  for (;;) {
+    v = other_end(mesh, edge, v);
+    if (v == start || in.degree(v) != 2 || (mesh.position(v) - mesh.position(start)).norm() >= distance) return mesh.position(v);
+    const int* at = &in.edges[in.first[v]];
+    edge = at[0] == edge ? at[1] : at[0];
+  }
 }
 
-void mark_corners(const TriangleMesh& mesh, const Incidence& in, double corner_angle, FeatureGraph& graph) {
-  const double max_cosine = std::cos(corner_angle * kDegree);
+/// \pre v has two feature edges
+bool turns_sharply(const TriangleMesh& mesh, const Incidence& in, int v, const CornerRule& rule) {
+  const int* edges = &in.edges[in.first[v]];
+  const auto turns = [&](double distance) {
+    const Vector3 a = ahead_of(mesh, in, v, edges[0], distance) - mesh.position(v);
+    const Vector3 b = ahead_of(mesh, in, v, edges[1], distance) - mesh.position(v);
+    return a.dot(b) > std::cos(rule.angle * kDegree) * a.norm() * b.norm() && a.squaredNorm() > 0 && b.squaredNorm() > 0;
+  };
+  return turns(0) && turns(rule.reach);
+}
+
+void mark_corners(const TriangleMesh& mesh, const Incidence& in, const CornerRule& rule, FeatureGraph& graph) {
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int degree = in.degree(v);
     graph.on_feature[v] = degree > 0;
-    graph.is_corner[v] =
-        degree == 1 || degree > 2 ||
-        (degree == 2 && turns_sharply(mesh, v, in.edges[in.first[v]], in.edges[in.first[v] + 1], max_cosine));
+    graph.is_corner[v] = degree == 1 || degree > 2 || (degree == 2 && turns_sharply(mesh, in, v, rule));
   }
 }
 
@@ -102,7 +115,7 @@ void flood_regions(const TriangleMesh& mesh, FeatureGraph& graph) {
 
 }  // namespace
 
-FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, double corner_angle,
+FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& is_feature, const CornerRule& rule,
                             const std::vector<int>& corners) {
   std::vector<char> marked = is_feature;
   for (int h = 0; h < mesh.halfedge_count(); ++h)
@@ -114,7 +127,7 @@ FeatureGraph trace_features(const TriangleMesh& mesh, const std::vector<char>& i
   graph.is_corner.assign(mesh.vertex_count(), 0);
   graph.on_feature.assign(mesh.vertex_count(), 0);
   graph.face_region.assign(mesh.face_count(), -1);
-  mark_corners(mesh, in, corner_angle, graph);
+  mark_corners(mesh, in, rule, graph);
   for (const int v : corners) graph.is_corner[v] = graph.on_feature[v];
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (graph.is_corner[v])

@@ -66,7 +66,7 @@ void take_features_away(ComponentPlan& plan, const std::vector<char>& remains) {
   }
   plan.given_way += static_cast<int>(std::count(fate.begin(), fate.end(), kGone));
   plan.marks_given_way += static_cast<int>(std::count(fate.begin(), fate.end(), kMarkedAndGone));
-  plan.features = trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners);
+  plan.features = trace_features(plan.mesh, remains, corners_for_quads(plan.length), plan.corners);
 }
 
 /// \param is_firm  3 #F  \returns it with the features that somebody wants a number of quads along
@@ -109,7 +109,7 @@ bool widen_gaps(ComponentPlan& plan, double length, const RunContext& context, c
   std::vector<char> remains;
   for (const double gap : kGaps) {
     remains = features_with_room(plan.mesh, plan.features, is_kept, gap * length, context);
-    if (has_room(trace_features(plan.mesh, remains, FeatureOptions{}.corner_angle, plan.corners))) break;
+    if (has_room(trace_features(plan.mesh, remains, corners_for_quads(plan.length), plan.corners))) break;
   }
   const int before = plan.given_way;
   take_features_away(plan, remains);

@@ -48,7 +48,7 @@ FeatureGraph GuideSettler::features_without(int ring) const {
   std::vector<char> is_feature(plan_.mesh.halfedge_count());
   for (int h = 0; h < plan_.mesh.halfedge_count(); ++h)
     is_feature[h] = guided_.features.is_feature(h) && !guides_.is_ring_only(plan_.guides[h], ring);
-  return trace_features(plan_.mesh, is_feature, FeatureOptions{}.corner_angle, seam_ends(plan_.mesh, options_.symmetry.planes));
+  return trace_features(plan_.mesh, is_feature, corners_for_quads(plan_.length), seam_ends(plan_.mesh, options_.symmetry.planes));
 }
 
 std::vector<std::array<int, 2>> GuideSettler::chain_of(int ring) const {

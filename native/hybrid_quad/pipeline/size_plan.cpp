@@ -50,7 +50,7 @@ void add_corners(ComponentPlan& plan, const std::vector<int>& corners) {
   std::vector<char> is_feature(plan.mesh.halfedge_count());
   for (int h = 0; h < plan.mesh.halfedge_count(); ++h) is_feature[h] = plan.features.is_feature(h);
   plan.corners.insert(plan.corners.end(), corners.begin(), corners.end());
-  plan.features = trace_features(plan.mesh, is_feature, FeatureOptions{}.corner_angle, plan.corners);
+  plan.features = trace_features(plan.mesh, is_feature, corners_for_quads(plan.length), plan.corners);
 }
 
 /// Vertices at tight bends of hard guides become corners.
