@@ -154,11 +154,11 @@ void FeatureDetector::mark_by_angle(const RunContext& context) {
 /// \param halfedges  of edges that may be features by angle
 void FeatureDetector::see_past_narrow_facets(const std::vector<int>& halfedges) {
   constexpr double kBend = 0.5;  // of the weak angle
-  constexpr double kNarrow = 0.03;
+  constexpr double kRise = 0.03;
   const Rounds rounds = find_rounds(mesh_, by_angle_, marked_);
   std::vector<char> may_bend(mesh_.halfedge_count(), 0), is_left(rounds.length.size(), 0);
   for (const int h : halfedges) set(may_bend, h, 1);
-  normal_ = normals_beside_narrow_facets(mesh_, normal_, may_bend, kBend * options_.weak_angle * kDegree, limit_ * kDegree, kNarrow * quad());
+  normal_ = normals_beside_narrow_facets(mesh_, normal_, may_bend, kBend * options_.weak_angle * kDegree, limit_ * kDegree, kRise * quad());
   for (const int h : halfedges) {
     set(by_angle_, h, angle(h) > limit_ * kDegree);
     if (by_angle_[h] && rounds.of_halfedge[h] >= 0) is_left[rounds.of_halfedge[h]] = 1;

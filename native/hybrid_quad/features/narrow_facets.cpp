@@ -15,11 +15,11 @@ constexpr int kRounds = 3;             ///< what takes other normals may fold wh
 /// Facets between edges that bend, of which the narrow folded ones join others one by one.
 class Facets {
  public:
-  Facets(const TriangleMesh& mesh, std::vector<Vector3>& normals, const std::vector<char>& is_inner, double bend, double fold, double width)
+  Facets(const TriangleMesh& mesh, std::vector<Vector3>& normals, const std::vector<char>& is_inner, double bend, double fold, double rise)
       : mesh_(mesh), normals_(normals), is_inner_(is_inner), most_bent_(std::cos(bend)), fold_(std::cos(fold)), facet_(mesh.face_count(), -1) {
     for (int f = 0; f < mesh.face_count(); ++f)
       if (facet_[f] < 0) flood(f);
-    find_narrow(width);
+    find_narrow(rise);
   }
 
   bool any_narrow() const { return !narrow_.empty(); }
@@ -78,9 +78,9 @@ class Facets {
     ++count_;
   }
 
-  void find_narrow(double width) {
+  void find_narrow(double rise) {
     struct Measure {
-      double area = 0, border = 0, folded = 0;
+      double area = 0, border = 0, folded = 0, sines = 0;  ///< lengths; sines: times those of the folds' bends
     };
     std::vector<Measure> of(count_);
     const auto is_border = [&](int h) { return mesh_.is_boundary(h) || facet_[h / 3] != facet_[mesh_.opposite(h) / 3]; };
@@ -89,11 +89,13 @@ class Facets {
       if (h % 3 == 0) facet.area += mesh_.area(h / 3);
       if (!is_border(h)) continue;
       facet.border += mesh_.edge_length(h);
-      if (is_inner_[h] && cosine(h) < fold_) facet.folded += mesh_.edge_length(h);
+      if (!is_inner_[h] || cosine(h) >= fold_) continue;
+      facet.folded += mesh_.edge_length(h);
+      facet.sines += mesh_.edge_length(h) * (cosine(h) > 0 ? std::sqrt(1 - cosine(h) * cosine(h)) : 1);
     }
     for (int f = 0; f < mesh_.face_count(); ++f) {
       const Measure& m = of[facet_[f]];
-      if (2 * m.area < width * m.border && m.folded > kFoldedShare * m.border) narrow_[facet_[f]].faces.push_back(f);
+      if (2 * m.area * m.sines < rise * m.border * m.folded && m.folded > kFoldedShare * m.border) narrow_[facet_[f]].faces.push_back(f);
     }
     for (auto& [id, facet] : narrow_)
       for (const int f : facet.faces)
@@ -145,10 +147,10 @@ class Facets {
 }  // namespace
 
 std::vector<Vector3> normals_beside_narrow_facets(const TriangleMesh& mesh, const std::vector<Vector3>& normals,
-                                                  const std::vector<char>& is_inner, double bend, double fold, double width) {
+                                                  const std::vector<char>& is_inner, double bend, double fold, double rise) {
   std::vector<Vector3> seen = normals;
   for (int round = 0; round < kRounds; ++round) {
-    Facets facets(mesh, seen, is_inner, bend, fold, width);
+    Facets facets(mesh, seen, is_inner, bend, fold, rise);
     if (!facets.any_narrow()) break;
     facets.join_narrow();
   }
