@@ -13,14 +13,19 @@ def pipe(segments: int, step: float) -> tuple[np.ndarray, np.ndarray]:
     turn = 2 * np.pi * np.arange(segments) / segments
     ring = np.column_stack([np.cos(turn), np.sin(turn)])
     levels = [(1.0, 0.0), (1.0, 0.6), (0.7, 0.6), (0.7, 0.0)]
-    vertices = np.concatenate([np.column_stack([radius * ring, np.full(segments, height)]) for radius, height in levels])
+    vertices = np.concatenate(
+        [np.column_stack([radius * ring, np.full(segments, height)]) for radius, height in levels]
+    )
     if step > 0:
         vertices = np.round(vertices / step) * step
     at, after = np.arange(segments), np.roll(np.arange(segments), -1)
     faces = []
     for level in range(4):
         low, high = level * segments, (level + 1) % 4 * segments
-        faces += [np.column_stack([low + at, low + after, high + after]), np.column_stack([low + at, high + after, high + at])]
+        faces += [
+            np.column_stack([low + at, low + after, high + after]),
+            np.column_stack([low + at, high + after, high + at]),
+        ]
     return vertices, np.concatenate(faces)
 
 
@@ -32,7 +37,9 @@ def bends(vertices: np.ndarray, faces: np.ndarray, degrees: float) -> int:
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     order = np.lexsort(edges.T)
     pairs = np.tile(np.arange(len(faces)), 3)[order].reshape(-1, 2)
-    return int(np.count_nonzero(np.sum(normals[pairs[:, 0]] * normals[pairs[:, 1]], axis=1) < np.cos(np.radians(degrees))))
+    return int(
+        np.count_nonzero(np.sum(normals[pairs[:, 0]] * normals[pairs[:, 1]], axis=1) < np.cos(np.radians(degrees)))
+    )
 
 
 @pytest.mark.parametrize("quads", [300, 500])
