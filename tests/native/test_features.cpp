@@ -211,13 +211,13 @@ TEST(Features, RimAndBottomOfABlindHoleStayTogether) {
       options.minimum_length = around / share;
       const FeatureGraph g = detect(m, options);
       EXPECT_EQ(g.curves.size(), 3u) << "the boundary, the rim and the bottom's edge; rows " << rows << ", share " << share;
-      EXPECT_EQ(g.rounds_left_out, 0);
+      EXPECT_EQ(g.left_out, 0);
     }
     FeatureOptions options;
     options.minimum_length = around / 0.35;
     const FeatureGraph g = detect(m, options);
     EXPECT_EQ(g.curves.size(), 1u) << rows;
-    EXPECT_EQ(g.rounds_left_out, 2) << "what is lost is told";
+    EXPECT_EQ(g.left_out, 2) << "what is lost is told";
   }
 }
 

@@ -358,9 +358,7 @@ TEST(SizePlan, OfCreasesOnTopOfEachOtherOneStaysUnlessMarked) {
     marked.guides.assign(marked.ends.size(), -1);
     const ComponentPlan plan = plan_component(plate, kLength, marked, {}, Wishes{}, RemeshOptions{}, RunContext{});
     EXPECT_EQ(violations_of(plan.features, plan.mesh), std::vector<std::string>{});
-    if (thickness > 0.03 * kLength) {
-      EXPECT_EQ(plan.given_way > 0, plan.features.curves.size() < 12);
-    }
+    EXPECT_EQ(plan.given_way > 0, plan.features.curves.size() < 12);
     return plan.features.curves.size();
   };
   EXPECT_EQ(curves_of(0.1, false), 12u);

@@ -43,7 +43,7 @@ def test_the_rim_of_a_flap_thin_as_a_hair_is_no_feature():
 
 def test_guides_and_counts_give_way_where_they_leave_flawed_quads():
     case = load_case(FOLDER / "guides_on_a_wire")
-    report = hybrid_quad.remesh(case.vertices, case.faces, **{**arguments_of(case), "sharp_angle": None}).report
+    report = hybrid_quad.remesh(case.vertices, case.faces, **arguments_of(case)).report
     assert (report["flawed_quads"], report["marks_given_way"]) == (0, 1)
     assert report["quads"] < 2 * case.options["quads"]
     assert [record["met"] for record in report["guides"]] == [False]

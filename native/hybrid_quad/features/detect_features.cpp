@@ -44,11 +44,12 @@ class FeatureDetector {
   void weigh_edges(const RunContext& context);
   void drop_noise();
   std::vector<char> result() const;
-  int rounds_left_out() const { return narrow_rounds_ + static_cast<int>(std::count(is_too_small_.begin(), is_too_small_.end(), 1)); }
+  int left_out() const { return narrow_ + static_cast<int>(std::count(is_too_small_.begin(), is_too_small_.end(), 1)); }
   double limit() const { return limit_; }  ///< degrees above which edges were taken by angle; 0: none were
 
  private:
   void see_past_narrow_facets(const std::vector<int>& halfedges);
+  int count_narrow(const std::vector<char>& before) const;
   void drop_short_sets();
   void drop_unclear_branches();
   void drop_loose_ends();
@@ -59,9 +60,6 @@ class FeatureDetector {
   void set(std::vector<char>& flags, int h, char value) { flags[h] = flags[opposite_or_self(h)] = value; }
   int find_edge(int a, int b) const;
   double angle(int h) const;
-  /// Calls visit(h) for a half-edge of every edge at v, h leaving v except for the last one of a boundary fan.
-  template <class Visit>
-  void visit_edges_at(int v, Visit&& visit) const;
   int feature_degree(int v) const;
   int straightest_weak_edge(int v, const Vector3& direction) const;
   void try_chain(int v, double longest);
@@ -86,31 +84,16 @@ class FeatureDetector {
   double limit_ = 0;
   Rounds rounds_;  ///< of the edges by angle
   std::vector<char> is_too_small_;  ///< by round
-  int narrow_rounds_ = 0;           ///< that only narrow facets showed
+  int narrow_ = 0;  ///< curves that only narrow facets showed
   std::vector<double> weight_;  ///< 3 #F: 0..1, how much an edge by angle counts for its set
   double noise_share_ = 0;  ///< of the length of all edges by angle
 };
-
-template <class Visit>
-void FeatureDetector::visit_edges_at(int v, Visit&& visit) const {
-  const int start = mesh_.outgoing(v);
-  for (int h = start; h >= 0;) {
-    visit(h);
-    const int previous = TriangleMesh::previous(h);
-    if (mesh_.is_boundary(previous)) {
-      visit(previous);
-      return;
-    }
-    h = mesh_.opposite(previous);
-    if (h == start) return;
-  }
-}
 
 int FeatureDetector::find_edge(int a, int b) const {
   int found = -1;
   const int n = mesh_.vertex_count();
   if (a < 0 || b < 0 || a >= n || b >= n) return -1;
-  visit_edges_at(a, [&](int h) {
+  mesh_.visit_edges_at(a, [&](int h) {
     if (mesh_.to(h) == b || mesh_.from(h) == b) found = h;
   });
   return a == b ? -1 : found;
@@ -155,15 +138,34 @@ void FeatureDetector::mark_by_angle(const RunContext& context) {
 void FeatureDetector::see_past_narrow_facets(const std::vector<int>& halfedges) {
   constexpr double kBend = 0.5;  // of the weak angle
   constexpr double kRise = 0.03;
-  const Rounds rounds = find_rounds(mesh_, by_angle_, marked_);
-  std::vector<char> may_bend(mesh_.halfedge_count(), 0), is_left(rounds.length.size(), 0);
+  std::vector<char> may_bend(mesh_.halfedge_count(), 0);
   for (const int h : halfedges) set(may_bend, h, 1);
-  normal_ = normals_beside_narrow_facets(mesh_, normal_, may_bend, kBend * options_.weak_angle * kDegree, limit_ * kDegree, kRise * quad());
-  for (const int h : halfedges) {
-    set(by_angle_, h, angle(h) > limit_ * kDegree);
-    if (by_angle_[h] && rounds.of_halfedge[h] >= 0) is_left[rounds.of_halfedge[h]] = 1;
+  std::vector<Vector3> seen = normals_beside_narrow_facets(mesh_, normal_, may_bend, kBend * options_.weak_angle * kDegree,
+                                                           limit_ * kDegree, kRise * quad());
+  if (seen == normal_) return;
+  normal_ = std::move(seen);
+  const std::vector<char> before = by_angle_;
+  for (const int h : halfedges) set(by_angle_, h, angle(h) > limit_ * kDegree);
+  narrow_ = count_narrow(before);
+}
+
+/// Curves of edges by angle, rounds or as long as features have to be, of which nothing is left.
+int FeatureDetector::count_narrow(const std::vector<char>& before) const {
+  const Rounds rounds = find_rounds(mesh_, before, marked_);
+  const FeatureGraph curves = trace_features(mesh_, before, corners_for_quads(quad()), options_.corners);
+  std::vector<double> curve_length(curves.curves.size(), 0);
+  std::vector<char> is_round(curves.curves.size(), 0), is_left(curves.curves.size(), 0);
+  for (int h = 0; h < mesh_.halfedge_count(); ++h) {
+    const int c = curves.halfedge_curve[h];
+    if (c < 0 || !stands_for_edge(h)) continue;
+    curve_length[c] += length(h);
+    if (is_any(h)) is_left[c] = 1;
+    if (rounds.of_halfedge[h] >= 0) is_round[c] = 1;
   }
-  narrow_rounds_ = static_cast<int>(std::count(is_left.begin(), is_left.end(), 0));
+  int count = 0;
+  for (std::size_t c = 0; c < curve_length.size(); ++c)
+    count += !is_left[c] && (is_round[c] || curve_length[c] >= options_.minimum_length);
+  return count;
 }
 
 void FeatureDetector::close_gaps(const RunContext& context) {
@@ -173,7 +175,7 @@ void FeatureDetector::close_gaps(const RunContext& context) {
 
 int FeatureDetector::feature_degree(int v) const {
   int degree = 0;
-  visit_edges_at(v, [&](int h) { degree += is_any(h); });
+  mesh_.visit_edges_at(v, [&](int h) { degree += is_any(h); });
   return degree;
 }
 
@@ -181,7 +183,7 @@ int FeatureDetector::feature_degree(int v) const {
 int FeatureDetector::straightest_weak_edge(int v, const Vector3& direction) const {
   int best = -1;
   double best_cosine = std::cos(kChainTurn * kDegree);
-  visit_edges_at(v, [&](int h) {
+  mesh_.visit_edges_at(v, [&](int h) {
     if (is_any(h) || angle(h) <= options_.weak_angle * kDegree) return;
     const Vector3 e = (mesh_.from(h) == v ? 1.0 : -1.0) * mesh_.edge_vector(h);
     const double cosine = e.dot(direction) / std::max(e.norm() * direction.norm(), 1e-300);
@@ -196,7 +198,7 @@ int FeatureDetector::straightest_weak_edge(int v, const Vector3& direction) cons
 /// Walks from the loose end v of a strong chain over weak edges; keeps them if they reach another feature.
 void FeatureDetector::try_chain(int v, double longest) {
   Vector3 direction = Vector3::Zero();
-  visit_edges_at(v, [&](int h) {
+  mesh_.visit_edges_at(v, [&](int h) {
     if (is_any(h)) direction = (mesh_.from(h) == v ? -1.0 : 1.0) * mesh_.edge_vector(h);
   });
   std::vector<int> chain;
@@ -207,7 +209,7 @@ void FeatureDetector::try_chain(int v, double longest) {
     chain.push_back(h);
     direction = (mesh_.from(h) == v ? 1.0 : -1.0) * mesh_.edge_vector(h);
     length += direction.norm();
-    v = mesh_.from(h) == v ? mesh_.to(h) : mesh_.from(h);
+    v = mesh_.other_end(h, v);
     if (length > longest) return;
     if (feature_degree(v) > 0) break;
   }
@@ -337,7 +339,7 @@ FeatureDetector::Branch FeatureDetector::branch_from(int tip, int first) const {
     int out = first;
     first = -1;
     if (out < 0)
-      visit_edges_at(v, [&](int h) {
+      mesh_.visit_edges_at(v, [&](int h) {
         if (by_angle_[h] && !marked_[h] && h != came && opposite_or_self(h) != came) out = h;
       });
     if (out < 0) break;
@@ -345,7 +347,7 @@ FeatureDetector::Branch FeatureDetector::branch_from(int tip, int first) const {
     branch.length += length(out);
     branch.evidence += evidence(out);
     came = out;
-    v = mesh_.from(out) == v ? mesh_.to(out) : mesh_.from(out);
+    v = mesh_.other_end(out, v);
   } while (feature_degree(v) == 2 && v != tip);
   branch.root = v;
   return branch;
@@ -357,7 +359,7 @@ void FeatureDetector::drop_unclear_branches() {
   std::vector<Branch> unclear;
   for (int v = 0; v < mesh_.vertex_count(); ++v) {
     if (mesh_.outgoing(v) < 0 || feature_degree(v) < 3) continue;
-    visit_edges_at(v, [&](int h) {
+    mesh_.visit_edges_at(v, [&](int h) {
       if (!by_angle_[h] || marked_[h]) return;
       Branch branch = branch_from(v, h);
       if (branch.length < options_.minimum_length && branch.evidence < kUnclear * branch.length)
@@ -404,8 +406,8 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const std::vector<Vector3
   detector.mark_given_edges();
   detector.mark_by_angle(context);
   detector.continue_chains(context);
-  if (options.minimum_length > 0) detector.close_gaps(context);
   if (options.minimum_length > 0) {
+    detector.close_gaps(context);
     detector.weigh_edges(context);
     detector.drop_noise();
   }
@@ -414,7 +416,7 @@ FeatureGraph detect_features(const TriangleMesh& mesh, const std::vector<Vector3
   corners.angle = options.corner_angle;
   FeatureGraph features = trace_features(mesh, detector.result(), corners, options.corners);
   features.sharp_angle = detector.limit();
-  features.rounds_left_out = detector.rounds_left_out();
+  features.left_out = detector.left_out();
   return features;
 }
 

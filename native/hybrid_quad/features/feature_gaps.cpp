@@ -21,7 +21,7 @@ class Gaps {
 
   int degree(int v) const {
     int degree = 0;
-    visit_edges_at(v, [&](int h) { degree += is_feature_[h]; });
+    mesh_.visit_edges_at(v, [&](int h) { degree += is_feature_[h]; });
     return degree;
   }
 
@@ -32,7 +32,7 @@ class Gaps {
     for (const auto& [v, distance] : beside.distance)
       if (v != tip && !along.distance.count(v) && degree(v) > 0 && (goal < 0 || distance < beside.distance.at(goal))) goal = v;
     std::vector<int> way;
-    for (int v = goal; v >= 0 && v != tip; v = other_end(way.back(), v)) way.push_back(beside.came.at(v));
+    for (int v = goal; v >= 0 && v != tip; v = mesh_.other_end(way.back(), v)) way.push_back(beside.came.at(v));
     for (const int h : way) {
       is_feature_[h] = 1;
       if (mesh_.opposite(h) >= 0) is_feature_[mesh_.opposite(h)] = 1;
@@ -56,10 +56,10 @@ class Gaps {
       const auto [so_far, v] = waiting.top();
       waiting.pop();
       if (so_far > found.distance.at(v)) continue;
-      visit_edges_at(v, [&, from = v, done = so_far](int h) {
+      mesh_.visit_edges_at(v, [&, from = v, done = so_far](int h) {
         const double distance = done + mesh_.edge_length(h);
         if ((is_feature_[h] != 0) != along_features || distance > reach) return;
-        const int to = other_end(h, from);
+        const int to = mesh_.other_end(h, from);
         const auto known = found.distance.find(to);
         if (known != found.distance.end() && known->second <= distance) return;
         found.distance[to] = distance;
@@ -68,23 +68,6 @@ class Gaps {
       });
     }
     return found;
-  }
-
-  int other_end(int h, int v) const { return mesh_.from(h) == v ? mesh_.to(h) : mesh_.from(h); }
-
-  template <class Visit>
-  void visit_edges_at(int v, Visit&& visit) const {
-    const int start = mesh_.outgoing(v);
-    for (int h = start; h >= 0;) {
-      visit(h);
-      const int previous = TriangleMesh::previous(h);
-      if (mesh_.is_boundary(previous)) {
-        visit(previous);
-        return;
-      }
-      h = mesh_.opposite(previous);
-      if (h == start) return;
-    }
   }
 
   const TriangleMesh& mesh_;

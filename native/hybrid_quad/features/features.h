@@ -24,7 +24,9 @@ struct FeatureGraph {
   std::vector<int> face_region;     ///< #F: connected region of faces between feature curves
   double sharp_angle = 0;           ///< of detect_features: degrees above which edges by angle were looked at; 0: none were
 
-  int rounds_left_out = 0;  ///< of detect_features: rims of holes and pins by angle that are too small for the minimum length
+  /// Of detect_features: rims of holes and pins by angle that are too small for the minimum length, and curves that only facets too narrow for
+  /// it showed.
+  int left_out = 0;
 
   bool is_feature(int h) const { return halfedge_curve[h] >= 0; }
 };
@@ -49,7 +51,7 @@ struct FeatureOptions {
   /// Scene units; about three edges of the quads to come. Connected edges by angle that are shorter than this, counting only
   /// what is clearly a crease seen from a sixth of it away, are taken for noise of a sculpt or scan. Closed curves of eight edges and more
   /// that go around evenly, as the rims of holes, are none: two fifths are enough, and they are seen from half their radius away.
-  /// 0: all above the sharp angle are kept.
+  /// What facets show that are narrow against it counts as noise too (narrow_facets.h). 0: all above the sharp angle are kept.
   double minimum_length = 0.0;
   double corner_angle = CornerRule{}.angle;
   std::vector<std::array<int, 2>> marked_edges;  ///< vertex pairs that are features whatever their angle; never dropped

@@ -13,8 +13,6 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 /// The half-edge that stands for its edge.
 int edge_of(const TriangleMesh& mesh, int h) { return mesh.opposite(h) < 0 ? h : std::min(h, mesh.opposite(h)); }
 
-int other_end(const TriangleMesh& mesh, int edge, int v) { return mesh.from(edge) == v ? mesh.to(edge) : mesh.from(edge); }
-
 /// Feature edges about each vertex, in the order of their half-edges.
 struct Incidence {
   std::vector<int> first;  ///< #V + 1
@@ -45,7 +43,7 @@ Incidence incident_feature_edges(const TriangleMesh& mesh, const std::vector<cha
 Vector3 ahead_of(const TriangleMesh& mesh, const Incidence& in, int v, int edge, double distance) {
   const int start = v;
   for (;;) {
-    v = other_end(mesh, edge, v);
+    v = mesh.other_end(edge, v);
     if (v == start || in.degree(v) != 2 || (mesh.position(v) - mesh.position(start)).norm() >= distance) return mesh.position(v);
     const int* at = &in.edges[in.first[v]];
     edge = at[0] == edge ? at[1] : at[0];
@@ -81,7 +79,7 @@ void trace_curve(const TriangleMesh& mesh, const Incidence& in, int v, int edge,
   for (;;) {
     graph.halfedge_curve[edge] = id;
     if (!mesh.is_boundary(edge)) graph.halfedge_curve[mesh.opposite(edge)] = id;
-    v = other_end(mesh, edge, v);
+    v = mesh.other_end(edge, v);
     curve.vertices.push_back(v);
     if (graph.is_corner[v] || v == start) break;
     const int* at = &in.edges[in.first[v]];
@@ -166,13 +164,9 @@ void check_halfedges(const FeatureGraph& g, const TriangleMesh& mesh, std::vecto
 
 /// An edge of the given curve between a and b.
 bool has_curve_edge(const FeatureGraph& g, const TriangleMesh& mesh, int a, int b, int curve) {
-  const int start = mesh.outgoing(a);
-  for (int h = start, first = 1; h >= 0 && (first || h != start); h = mesh.rotate_ccw(h), first = 0) {
-    if (mesh.to(h) == b && g.halfedge_curve[h] == curve) return true;
-    const int p = TriangleMesh::previous(h);
-    if (mesh.from(p) == b && g.halfedge_curve[p] == curve) return true;
-  }
-  return false;
+  bool any = false;
+  mesh.visit_edges_at(a, [&](int h) { any |= mesh.other_end(h, a) == b && g.halfedge_curve[h] == curve; });
+  return any;
 }
 
 void check_curve(const FeatureGraph& g, const TriangleMesh& mesh, int c, std::vector<std::string>& found) {

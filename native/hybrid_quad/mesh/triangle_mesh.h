@@ -53,6 +53,22 @@ class TriangleMesh {
   int rotate_ccw(int h) const { return opposite_[previous(h)]; }
   /// The next outgoing half-edge clockwise around its origin, or -1 past the first of a boundary fan.
   int rotate_cw(int h) const { return opposite_[h] < 0 ? -1 : next(opposite_[h]); }
+  /// Calls visit(h) for a half-edge of every edge at v, h leaving v except for the last one of a boundary fan.
+  template <class Visit>
+  void visit_edges_at(int v, Visit&& visit) const {
+    const int start = outgoing(v);
+    for (int h = start; h >= 0;) {
+      visit(h);
+      if (is_boundary(previous(h))) {
+        visit(previous(h));
+        return;
+      }
+      h = rotate_ccw(h);
+      if (h == start) return;
+    }
+  }
+  /// The other end of h's edge. \pre v is one of its ends
+  int other_end(int h, int v) const { return from(h) == v ? to(h) : from(h); }
 
   Vector3 edge_vector(int h) const { return positions_[to(h)] - positions_[from(h)]; }
   double edge_length(int h) const { return edge_vector(h).norm(); }

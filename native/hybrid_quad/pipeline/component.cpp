@@ -208,18 +208,26 @@ void mend_loops(const ComponentPlan& planned, double wanted, const SurfaceIndex&
   }
 }
 
-/// At the very last, as marked edges do, what asks for edges of its own gives way to sound quads.
+/// At the very last, as marked edges do, what asks for edges of its own gives way to sound quads, and to a number of quads that is not far
+/// beyond what is wanted.
 void let_exact_wishes_give_way(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                const HardGuides& guides, const RemeshOptions& options, ComponentResult& best, WorkBudget& budget,
                                StageClock& clock, const RunContext& context) {
   const std::optional<ComponentPlan> plan = without_exact_wishes(planned, guides, options.symmetry.planes, context);
   if (!plan) return;
+  constexpr double kFarTooMany = 10;
   const double as_many = wanted * plan->quads / planned.quads;
+  const auto excess = [&](const ComponentResult& result) {
+    return static_cast<double>(result.mesh.quads.size()) / std::max<double>(as_many, fewest_quads(plan->mesh));
+  };
+  if (best.flawed_quads == 0 && excess(best) <= kFarTooMany) return;
   try {
     ComponentResult result = remesh_in_passes(*plan, std::nullopt, as_many, whole, wishes, guides, options, budget, clock, context);
     result.passes += best.passes;
     best.passes = result.passes;
-    const bool is_better = result.flawed_quads < best.flawed_quads;
+    const bool is_better =
+        result.flawed_quads < best.flawed_quads ||
+        (result.flawed_quads == best.flawed_quads && excess(best) > kFarTooMany && excess(result) < excess(best));
     if (is_better) std::swap(best, result);
     keep_broken_promises(result, best);
   } catch (const InternalError& error) {
@@ -256,8 +264,7 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
   keep_broken_promises(broken, best);
   if (!planned.guides.empty() && options.improve)
     mend_loops(planned, wanted, whole, wishes, guides, options, best, budget, clock, context);
-  if (best.flawed_quads > 0)
-    let_exact_wishes_give_way(plan, number, whole, wishes, guides, options, best, budget, clock, context);
+  let_exact_wishes_give_way(plan, number, whole, wishes, guides, options, best, budget, clock, context);
   return best;
 }
 

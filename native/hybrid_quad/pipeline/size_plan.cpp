@@ -205,7 +205,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.corners = features.corners;
   plan.features = detect_features(plan.mesh, crease_normals_of_parts(mesh, fine.face_source), features, context);
   plan.sharp_angle = plan.features.sharp_angle;
-  plan.given_way = plan.features.rounds_left_out;
+  plan.given_way = plan.features.left_out;
   if (features.use_sharp_angle) merge_double_lines(plan, plan.length / most_density, context);
   if (!plan.guides.empty()) add_guide_corners(plan);
   plan.density = density_on(wishes, plan.mesh, plan.length, context);
@@ -317,6 +317,7 @@ ComponentPlan without_marks_at(const ComponentPlan& plan, const std::vector<Vect
 
 std::optional<ComponentPlan> without_exact_wishes(const ComponentPlan& plan, const HardGuides& guides, PlaneSet mirror_planes,
                                                   const RunContext& context) {
+  if (plan.guides.empty() && plan.asked_chains.empty()) return std::nullopt;
   ComponentPlan without = plan;
   without.part = -1;
   if (!let_exact_wishes_go(without, guides)) return std::nullopt;
