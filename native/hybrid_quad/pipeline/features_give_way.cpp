@@ -154,6 +154,12 @@ bool make_room_for_shapes(ComponentPlan& plan, const RunContext& context) {
          });
 }
 
+bool let_angles_go(ComponentPlan& plan) {
+  const int before = plan.given_way;
+  take_features_away(plan, with_boundary(plan, firm_features(plan)));
+  return plan.given_way > before;
+}
+
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places) {
   const int before = plan.given_way;
   take_away_at(plan, places, firm_features(plan), [&](int a, int b) { return std::max(plan.target[a], plan.target[b]); });

@@ -23,6 +23,9 @@ bool make_room(ComponentPlan& plan, const RunContext& context);
 /// be seen: where features are all that a thin part has, it comes out the worse. \returns whether any
 bool make_room_for_shapes(ComponentPlan& plan, const RunContext& context);
 
+/// Takes away all features that are there by their angle. \returns whether any
+bool let_angles_go(ComponentPlan& plan);
+
 /// Takes away the features that pass within an edge of some places. \returns whether any
 bool make_room_at(ComponentPlan& plan, const std::vector<Vector3>& places);
 

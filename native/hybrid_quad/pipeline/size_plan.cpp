@@ -212,7 +212,8 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < plan.density.size(); ++v) plan.unlimited[v] = plan.length / plan.density[v];
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
-  plan.least_ratio = plan.thin_ratio = plan.length < kTiny * length ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
+  plan.is_speck = plan.length < kTiny * length;
+  plan.least_ratio = plan.thin_ratio = plan.is_speck ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
   plan_lengths(plan, options.symmetry.planes, context);
   return plan;
 }
@@ -302,6 +303,10 @@ std::optional<ComponentPlan> with_long_quads(const ComponentPlan& plan, const Th
 
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
   return with_fewer_features(plan, mirror_planes, context, [&](ComponentPlan& without) { return make_room_for_shapes(without, context); });
+}
+
+ComponentPlan without_features_by_angle(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context) {
+  return with_fewer_features(plan, mirror_planes, context, [](ComponentPlan& without) { return let_angles_go(without); });
 }
 
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes,

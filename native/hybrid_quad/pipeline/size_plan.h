@@ -38,6 +38,7 @@ struct ComponentPlan {
   ThinStretch thin_stretch;     ///< of quads on thin parts
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
+  bool is_speck = false;         ///< smaller than a few quads of the asked length, and with shorter edges than asked
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
   std::shared_ptr<const ComponentPlan>
       with_all;  ///< the plan before they did, where quads that follow them all are not beyond reach; null: else
@@ -88,6 +89,9 @@ std::optional<ComponentPlan> with_long_quads(const ComponentPlan& plan, const Th
 /// The plan for as many quads with fewer features by angle, where these are cramped: more than a few are shorter than quads, or some
 /// gave way to the number already. Else the same plan.
 ComponentPlan with_room_for_shapes(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context);
+
+/// The plan for as many quads without any features by angle.
+ComponentPlan without_features_by_angle(const ComponentPlan& plan, PlaneSet mirror_planes, const RunContext& context);
 
 /// The plan for as many quads without the features by angle that pass within an edge of some places.
 ComponentPlan without_features_at(const ComponentPlan& plan, const std::vector<Vector3>& places, PlaneSet mirror_planes, const RunContext& context);
