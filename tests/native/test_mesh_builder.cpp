@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "hybrid_quad/base/errors.h"
 #include "hybrid_quad/mesh/degenerate_faces.h"
@@ -502,6 +503,48 @@ TEST(MeshBuilder, RefusesAMoebiusStrip) {
   add_face(strip, {2 * n - 2, 1, 0, 2 * n - 1});
   EXPECT_EQ(refusal(strip), "non_orientable");
 }
+
+/// A sphere with a tube inside, from one face to another, that is joined inside out at its second end.
+PolygonSoup sphere_with_twisted_tube(int levels) {
+  const TriangleMesh sphere = test::icosphere(levels);
+  const int first = 0, second = sphere.face_count() / 2;
+  PolygonSoup soup;
+  soup.positions = sphere.positions();
+  for (int f = 0; f < sphere.face_count(); ++f)
+    if (f != first && f != second) add_face(soup, {sphere.face(f)[0], sphere.face(f)[1], sphere.face(f)[2]});
+  const auto &a = sphere.face(first), &b = sphere.face(second);
+  for (int i = 0; i < 3; ++i) add_face(soup, {a[i], a[(i + 1) % 3], b[(i + 1) % 3], b[i]});
+  return soup;
+}
+
+TEST(MeshBuilder, CutsShortTwistsOpen) {
+  const PolygonSoup soup = sphere_with_twisted_tube(4);
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_EQ(built.mesh.face_count(), static_cast<int>(soup.face_sizes.size()) + 3) << "nothing is left out";
+  EXPECT_EQ(built.mesh.euler_characteristic(), 0);
+  EXPECT_EQ(boundary_edges(built.mesh), 2 * 3) << "both sides of the cut";
+  EXPECT_GT(signed_volume(built.mesh), 3) << "the sphere faces outwards as it did";
+  const auto twisted = std::find_if(built.defects.begin(), built.defects.end(), [](const Defect& d) { return d.code == "twisted_edge"; });
+  ASSERT_NE(twisted, built.defects.end());
+  EXPECT_TRUE(twisted->repairable);
+  EXPECT_EQ(twisted->element_kind, "edge");
+  EXPECT_EQ(std::set<int>(twisted->elements.begin(), twisted->elements.end()).size(), 3u);
+  EXPECT_FALSE(has_defect(built.defects, "flipped_face"));
+}
+
+TEST(MeshBuilder, TellsFlippedFacesFromTwists) {
+  PolygonSoup soup = test::soup_of(test::icosphere(4));
+  for (const int f : {7, 8, 200, 411}) flip_face(soup, f);
+  EXPECT_FALSE(has_defect(build_mesh(soup).defects, "twisted_edge"));
+  soup = sphere_with_twisted_tube(4);
+  for (const int f : {100, 300, 500}) flip_face(soup, f);
+  const BuiltMesh built = build_mesh(soup);
+  EXPECT_TRUE(has_defect(built.defects, "twisted_edge"));
+  EXPECT_TRUE(has_defect(built.defects, "flipped_face"));
+  EXPECT_EQ(boundary_edges(built.mesh), 2 * 3);
+}
+
+TEST(MeshBuilder, RefusesTwistsThatAreLong) { EXPECT_EQ(refusal(sphere_with_twisted_tube(1)), "non_orientable"); }
 
 TEST(MeshBuilder, EveryBadModelIsBuiltOrRefused) {
   const std::string folder = test::models_folder();

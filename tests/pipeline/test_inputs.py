@@ -112,9 +112,26 @@ def unrolled():
     return surfaces.unrolled_sphere()
 
 
+def joined_inside_out():
+    """A sphere with a tube inside, from one face to another, whose second end is the wrong way round."""
+    vertices, faces = surfaces.sphere(12)
+    a, b = faces[0], faces[len(faces) // 2]
+    tube = [face for i, j in ((0, 1), (1, 2), (2, 0)) for face in ((a[i], a[j], b[j]), (a[i], b[j], b[i]))]
+    return vertices, np.concatenate([np.delete(faces, [0, len(faces) // 2], axis=0), tube])
+
+
 REPAIRED = {
     made.__name__: made
-    for made in (fin, some_faces_turned, two_bodies_at_one_vertex, unused_vertices, faces_twice, unwelded, unrolled)
+    for made in (
+        fin,
+        some_faces_turned,
+        two_bodies_at_one_vertex,
+        unused_vertices,
+        faces_twice,
+        unwelded,
+        unrolled,
+        joined_inside_out,
+    )
 }
 
 

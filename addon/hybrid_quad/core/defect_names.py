@@ -6,6 +6,7 @@ from __future__ import annotations
 WORDS = {
     "non_manifold_edge": ("edge in more than two faces", "edges in more than two faces"),
     "non_manifold_vertex": ("vertex that only joins sheets", "vertices that only join sheets"),
+    "twisted_edge": ("edge that joins the two sides", "edges that join the two sides"),
     "flipped_face": ("flipped face", "flipped faces"),
     "unwelded_vertex": ("unmerged vertex", "unmerged vertices"),
     "nearly_welded_vertex": ("nearly merged vertex", "nearly merged vertices"),

@@ -1,6 +1,7 @@
 #include "hybrid_quad/mesh/manifold_gluing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -78,6 +79,7 @@ class Gluer {
  private:
   void collect_sides();
   void glue_simple_edges();
+  void cut_twists(const std::vector<int>& twists);
   void glue_crowded_edges();
   void glue_crowded_edge(int begin, int end);
   void orient();
@@ -111,7 +113,7 @@ void Gluer::collect_sides() {
 
 void Gluer::glue_simple_edges() {
   const int n = static_cast<int>(sides_.size());
-  std::vector<int> conflicts;
+  std::vector<int> turned;  // first sides of edges whose faces turn over
   for (int i = 0, j = 0; i < n; i = j) {
     context_.checkpoint_at(i);
     for (j = i + 1; j < n && sides_[j].low == sides_[i].low && sides_[j].high == sides_[i].high;) ++j;
@@ -119,14 +121,38 @@ void Gluer::glue_simple_edges() {
     if (j - i != 2) continue;
     const int f = sides_[i].halfedge / 3, g = sides_[i + 1].halfedge / 3;
     if (f == g) continue;
-    if (!sets_.join(f, g, sides_[i].forward == sides_[i + 1].forward)) conflicts.push_back(f);
-    else glue(sides_[i].halfedge, sides_[i + 1].halfedge);
+    if (sides_[i].forward == sides_[i + 1].forward) {
+      turned.push_back(i);
+      continue;
+    }
+    sets_.join(f, g, 0);
+    glue(sides_[i].halfedge, sides_[i + 1].halfedge);
   }
-  if (conflicts.empty()) return;
-  std::vector<char> bad(out_.faces.size(), 0);
-  for (const int f : conflicts) bad[sets_.find(f).first] = 1;
-  for (int f = 0; f < static_cast<int>(out_.faces.size()); ++f)
-    if (bad[sets_.find(f).first]) out_.non_orientable_faces.push_back(f);
+  std::vector<int> twists;
+  for (const int i : turned) {
+    if (sets_.join(sides_[i].halfedge / 3, sides_[i + 1].halfedge / 3, 1)) glue(sides_[i].halfedge, sides_[i + 1].halfedge);
+    else twists.push_back(i);
+  }
+  if (!twists.empty()) cut_twists(twists);
+}
+
+/// Leaves twists open where they are short, and gives up on components where they are not.
+/// \param twists  first sides of edges that would give a component one side only
+void Gluer::cut_twists(const std::vector<int>& twists) {
+  constexpr double kShort = 0.15;  // of the root of the area
+  const int face_count = static_cast<int>(out_.faces.size());
+  std::vector<double> length(face_count, 0), area(face_count, 0);  // of sets
+  for (const int i : twists)
+    length[sets_.find(sides_[i].halfedge / 3).first] += (positions_[sides_[i].high] - positions_[sides_[i].low]).norm();
+  for (int f = 0; f < face_count; ++f) {
+    const auto& t = out_.faces[f];
+    area[sets_.find(f).first] += 0.5 * (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]).norm();
+  }
+  for (int f = 0; f < face_count; ++f) {
+    const int set = sets_.find(f).first;
+    if (length[set] > kShort * std::sqrt(area[set])) out_.non_orientable_faces.push_back(f);
+  }
+  for (const int i : twists) out_.twisted_edges.push_back({sides_[i].low, sides_[i].high});
 }
 
 /// Unit direction from the edge into the side's face, across the edge.

@@ -384,6 +384,9 @@ BuiltMesh MeshBuilder::glue(const RunContext& context) {
     refuse("not_a_surface", "Most edges are in more than two faces, as inside a volume: this is no surface.", "edge", std::move(edge_ends));
   note("flipped_face", "face", polygons_of(flipped), "turned around");
   note("non_manifold_edge", "edge", std::move(edge_ends), kCut);
+  std::vector<int> twisted;
+  for (const auto& e : glued.twisted_edges) twisted.insert(twisted.end(), e.begin(), e.end());
+  note("twisted_edge", "edge", std::move(twisted), "the surface, which would have one side only, is cut there");
   note("non_manifold_vertex", "vertex", glued.non_manifold_vertices, "each sheet gets a vertex of its own");
 
   BuiltMesh built;
