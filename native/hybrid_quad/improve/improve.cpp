@@ -1,6 +1,7 @@
 #include "hybrid_quad/improve/improve.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hybrid_quad/improve/crowding.h"
 #include "hybrid_quad/improve/fit.h"
@@ -57,7 +58,7 @@ void bind(Workpiece& piece, const RunContext& context) {
 
 /// One round of everything; quads in `locked` stay as they are.
 /// \param released  tips that hold nothing
-Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, const std::vector<Vector3>& released, const TriangleMesh& input,
+Improved improve_around(const QuadMesh& quads, const std::vector<char>& locked, const std::vector<Vector3>& released, const TriangleMesh& input,
                       const FeatureGraph& features, const SurfaceIndex& index, const SurfaceIndex& whole,
                       const ImproveOptions& options, const RunContext& context) {
   Improved improved{quads, {}, {}, {}};
@@ -109,6 +110,13 @@ Improved improve_once(const QuadMesh& quads, const std::vector<char>& locked, co
   return improved;
 }
 
+ImprovementAttempts attempts_at(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                                const ImproveOptions& options, const RunContext& context, const SurfaceIndex& judged) {
+  return {quads, index, judged, options.agreement, context, [&](const std::vector<char>& locked, const std::vector<Vector3>& released) {
+            return improve_around(quads, locked, released, input, features, index, judged, options, context);
+          }};
+}
+
 int flawed_in(const EditMesh& mesh, const FlawMeasure& measure) {
   int flawed = 0;
   for (int q = 0; q < mesh.quad_count(); ++q) flawed += mesh.alive(q) && measure.is_flawed(q);
@@ -139,15 +147,18 @@ double area_of(const QuadMesh& m) {
 
 }  // namespace
 
+Improved improve_once(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                      const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
+  if (quads.quads.empty() || input.face_count() == 0) return {quads, {}, {}, {}};
+  return attempts_at(quads, input, features, index, options, context, whole ? *whole : index).once();
+}
+
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
-                            const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole) {
+                            const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole,
+                            std::optional<Improved> first) {
   if (quads.quads.empty() || input.face_count() == 0) return {};
-  const SurfaceIndex& judged = whole ? *whole : index;
-  ImprovementAttempts attempts(quads, index, judged, options.agreement, context,
-                               [&](const std::vector<char>& locked, const std::vector<Vector3>& released) {
-                                 return improve_once(quads, locked, released, input, features, index, judged, options, context);
-                               });
-  Improved best = attempts.best();
+  ImprovementAttempts attempts = attempts_at(quads, input, features, index, options, context, whole ? *whole : index);
+  Improved best = attempts.best(std::move(first));
   ImproveReport& report = best.report;
   // A few quads around something small may slip off it to one side, where they shrink to a point.
   constexpr double kLeastArea = 0.1;

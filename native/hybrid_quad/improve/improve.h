@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include "hybrid_quad/base/run_context.h"
 #include "hybrid_quad/features/features.h"
 #include "hybrid_quad/frame_field/guide_map.h"
@@ -40,14 +41,29 @@ struct ImproveReport {
   int restored_quads = 0;  ///< quads left as they were extracted, where improving them brought flaws or took them off the surface
 };
 
+/// Quads that one round has improved.
+struct Improved {
+  QuadMesh quads;
+  ImproveReport report;
+  std::vector<Vector3> tips;  ///< that held some of them
+  std::vector<int> flawed;
+};
+
+/// The first of the rounds of improve_quads: what comes out, but for places that are given up on and parts that are left.
+/// \param whole  as for improve_quads
+Improved improve_once(const QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
+                      const ImproveOptions& options, const RunContext& context, const SurfaceIndex* whole = nullptr);
+
 /// Makes the quads good without leaving the surface: connectivity moves that lower the valence cost, then smoothing and
 /// untangling (regularised corner energy) with vertices on the input surface, curve vertices on their curves and corners
 /// fixed. Never makes a valid mesh invalid (checked move by move), and gives up on places that come out flawed but were not
 /// before: these stay as they are.
 /// \param whole  the surface that `input` is part of, which flaws are judged by; null: `input` is all of it
+/// \param first  what improve_once made of the same quads, if it did
 ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features,
                             const SurfaceIndex& index, const ImproveOptions& options, const RunContext& context,
-                            const SurfaceIndex* whole = nullptr);
+                            const SurfaceIndex* whole = nullptr,
+                            std::optional<Improved> first = std::nullopt);
 
 /// The Catmull-Clark limit surface of the quads against the surface, in scene units; `mean` is by area.
 struct LimitFitReport {

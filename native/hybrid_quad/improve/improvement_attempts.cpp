@@ -53,13 +53,15 @@ ImprovementAttempts::ImprovementAttempts(const QuadMesh& extracted, const Surfac
 
 int ImprovementAttempts::flawed_before() { return restoration().flawed_count(); }
 
-Improved ImprovementAttempts::best() {
-  Improved best = with_fewest_flaws();
+Improved ImprovementAttempts::once() { return attempt(); }
+
+Improved ImprovementAttempts::best(std::optional<Improved> first) {
+  Improved best = with_fewest_flaws(std::move(first));
   return_to_surface(best);
   // Quads that tips hold may be in each other's way: where nothing else helps none are held.
   if (best.report.flawed_after > 0 && !best.tips.empty()) {
     released_ = best.tips;
-    Improved now = with_fewest_flaws();
+    Improved now = with_fewest_flaws(std::nullopt);
     if (now.report.flawed_after <= best.report.flawed_after) best = std::move(now);
   }
   return best;
@@ -83,10 +85,10 @@ Improved ImprovementAttempts::attempt() {
 
 /// Of some attempts, each with more of what was extracted around flawed quads: as long as that helps, and a few times anyway before tips
 /// have to let go.
-Improved ImprovementAttempts::with_fewest_flaws() {
+Improved ImprovementAttempts::with_fewest_flaws(std::optional<Improved> first) {
   constexpr int kAttempts = 5;
   restoration_.reset();
-  Improved latest = attempt(), best = latest;
+  Improved latest = first ? *std::move(first) : attempt(), best = latest;
   for (int i = 1; i < kAttempts && is_worth_another_attempt(best.report.flawed_after, best.quads.quads.size()); ++i) {
     if (!restoration().give_up_around(latest.quads, latest.flawed)) break;
     latest = attempt();

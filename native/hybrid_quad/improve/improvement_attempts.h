@@ -9,14 +9,6 @@
 
 namespace hybrid_quad {
 
-/// Quads that one round has improved.
-struct Improved {
-  QuadMesh quads;
-  ImproveReport report;
-  std::vector<Vector3> tips;  ///< that held some of them
-  std::vector<int> flawed;
-};
-
 /// Improves the same quads again and again, with ever more of what was extracted where improving spoilt it (docs/decisions/0051).
 class ImprovementAttempts {
  public:
@@ -27,12 +19,14 @@ class ImprovementAttempts {
                       const RunContext& context, Round round);
 
   int flawed_before();  ///< of the extracted quads
-  Improved best();      ///< with flaws and what was restored in its report
+  Improved once();      ///< the first attempt, with flaws in its report
+  /// With what was restored in its report. \param first  what once() made of the same quads, if it did
+  Improved best(std::optional<Improved> first);
 
  private:
   Restoration& restoration();
   Improved attempt();
-  Improved with_fewest_flaws();
+  Improved with_fewest_flaws(std::optional<Improved> first);
   void return_to_surface(Improved& best);
 
   const QuadMesh& extracted_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "hybrid_quad/assemble/assemble.h"
 #include "hybrid_quad/assemble/feature_chains.h"
@@ -33,12 +34,13 @@ constexpr double kShareOfTolerance = 0.6;  ///< that rows of quads are fitted to
 /// From the default at the middle of the scale (less gains nothing) to frames that are kept as asked.
 double curl_weight_of(double size_fidelity) { return std::pow(10.0, 10 * (size_fidelity - 1)); }
 
-class ComponentRemesher {
+}  // namespace
+
+class ComponentPass::Stages {
  public:
   /// \param whole  the surface that the component is part of; the field needs none
-  ComponentRemesher(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes,
-                    const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings, StageClock& clock,
-                    const RunContext& context)
+  Stages(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes, const HardGuides& guides,
+         const RemeshOptions& options, const PassSettings& settings)
       : plan_(plan),
         mesh_(plan.mesh),
         topology_(topology_of(plan.mesh)),
@@ -47,17 +49,38 @@ class ComponentRemesher {
         guides_(guides),
         options_(options),
         settings_(settings),
-        clock_(clock),
-        context_(context) {}
+        tries_left_(most_tries()),
+        search_(plan.quads, least_to_ask()),
+        choice_(choice_of_tries(tries_left_)) {}
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
 
-  ComponentResult run() {
-    result_.area = mesh_.total_area();
-    prepare();
-    const FrameField unit = solve_field();
-    take(extract_with_count(unit));
+  /// Who measures and watches what follows.
+  void set_run(StageClock& clock, const RunContext& context) {
+    clock_ = &clock;
+    context_ = &context;
+  }
+
+  const QuadMesh& sketch() {
+    begin();
+    sketched_ = next_try();
+    const RunContext context = context_->in_stage("improve", 0.83, 0.97);
+    sketch_ = clock_->measure("improve", [&] { return finishing().improve_once(sketched_->mesh, context); });
+    return sketch_->quads;
+  }
+
+  ComponentResult complete() {
+    if (!sketched_) {
+      begin();
+      sketched_ = next_try();
+    }
+    do
+      settle(*std::exchange(sketched_, std::nullopt));
+    while ((sketched_ = next_try()));
+    take(choice_.best());
     result_.repairs.opened_flat_quads = open_flat_quads(result_.mesh, mean_edge_length(result_.mesh));
     require_valid("improve", result_.mesh, topology_);
-    const Doubts doubts = finishing().doubts(result_.mesh, context_.threads);
+    const Doubts doubts = finishing().doubts(result_.mesh, context_->threads);
     for (const int q : doubts.flawed) result_.flawed_places.push_back(middle_of(result_.mesh, q));
     result_.flawed_quads = static_cast<int>(result_.flawed_places.size());
     result_.features_given_way = plan_.given_way;
@@ -68,20 +91,25 @@ class ComponentRemesher {
   }
 
   ComponentPreview preview() {
-    prepare();
-    const FrameField unit = solve_field();
+    begin();
     if (whole_ != nullptr) {
-      Extraction quads = extract_somehow(unit, plan_.quads, plan_.quads);
-      finishing().make_mirrorable(quads.mesh, context_.in_stage("assemble", 0.97, 0.97));
+      Extraction quads = extract_somehow(plan_.quads, plan_.quads);
+      finishing().make_mirrorable(quads.mesh, context_->in_stage("assemble", 0.97, 0.97));
       quads.features = plan_.features;
       take(std::move(quads));
     } else {
-      sized_ = as_large_as_asked(unit);
+      sized_ = as_large_as_asked(unit_);
     }
     return {std::move(surface_), std::move(sized_), std::move(result_)};
   }
 
  private:
+  void begin() {
+    result_.area = mesh_.total_area();
+    prepare();
+    unit_ = solve_field();
+  }
+
   /// Made once, by who needs it: the field does not.
   const Finishing& finishing() {
     if (!finishing_) finishing_.emplace(plan_, *whole_, wishes_, options_);
@@ -91,7 +119,7 @@ class ComponentRemesher {
   /// What `make` gives, or gave in an earlier run for the same lengths.
   template <class Make>
   auto recalled_for_plan(StageCache::Level level, const std::string& stage, const Make& make) const {
-    return recalled(plan_.part < 0 ? nullptr : context_.cache, {level, stage, plan_.part, plan_.quads}, make);
+    return recalled(plan_.part < 0 ? nullptr : context_->cache, {level, stage, plan_.part, plan_.quads}, make);
   }
 
   /// Edges of the working surface have to be short beside the shorter sides of quads.
@@ -103,16 +131,16 @@ class ComponentRemesher {
   }
 
   void prepare() {
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(mesh_, plan_.features));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(mesh_, plan_.features));
     struct Checked {
       WorkingSurface surface;
       std::vector<std::string> violations;
     };
     const WorkingSurfaceOptions surface_options = working_surface_options(wishes_, plan_.quads, !plan_.guides.empty());
-    Checked checked = clock_.measure("working surface", [&] {
+    Checked checked = clock_->measure("working surface", [&] {
       return recalled_for_plan(StageCache::Level::kPlan, "working surface", [&] {
         Checked made{build_working_surface(*plan_.index, plan_.features, lengths_across(), surface_options,
-                                           context_.in_stage("working surface", 0, 0.2)),
+                                           context_->in_stage("working surface", 0, 0.2)),
                      {}};
         if (plan_.thin_stretch.is_any())
           for (double& length : made.surface.target_length) length = plan_.thin_stretch.with_across(length);
@@ -127,17 +155,17 @@ class ComponentRemesher {
       ++result_.repairs.broken_promises;
       result_.warnings.push_back("the working surface is not as promised: " + checked.violations.front());
     }
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(surface_));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(surface_));
   }
 
   FrameField solve_field() {
-    const RunContext context = context_.in_stage("frame field", 0.2, 0.3);
+    const RunContext context = context_->in_stage("frame field", 0.2, 0.3);
     struct Solved {
       FrameField unit;
       std::vector<double> direction_weight;
       std::vector<Eigen::Matrix3d> stretch;
     };
-    Solved solved = clock_.measure("frame field", [&] {
+    Solved solved = clock_->measure("frame field", [&] {
       return recalled_for_plan(StageCache::Level::kField, "frame field", [&] {
         const FrameFieldOptions o = field_options(surface_, wishes_, options_);
         Solved made{solve_frame_field(surface_, o, context), direction_weights(o), {}};
@@ -151,42 +179,43 @@ class ComponentRemesher {
     result_.field_singularities = unit.singularity_count();
     result_.feature_singularities = unit.feature_cones;
     result_.field_choice = unit.choice;
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(unit, surface_, "frame field"));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(unit, surface_, "frame field"));
     return unit;
   }
 
-  /// Extracts and improves, and asks again for more or fewer where the count came out far from what was asked; where that
-  /// does not help at once, rows of quads are split or taken out.
-  Extraction extract_with_count(const FrameField& unit) {
+  /// Extracts quads that are worth improving. Asks for more or fewer than the last time where the number came out far from what is wanted;
+  /// where that does not help at once, rows of quads are split or taken out.
+  /// \returns none where no further try is to be made
+  std::optional<Extraction> next_try() {
     constexpr int kTriesWithoutRows = 1;
-    const int tries = most_tries();
-    const bool is_later = settings_.kind != PassKind::kFirst;
-    CountSearch search(plan_.quads, least_to_ask());
-    ExtractionChoice choice = choice_of_tries(tries);
-    for (int i = 0; i < tries; ++i) {
-      const bool is_stuck = search.at_least() || search.is_stuck();
-      if (choice.any() && is_stuck && i > kTriesWithoutRows) break;
-      const bool is_last = i + 1 == tries || is_stuck;
-      const bool with_rows = settings_.kind != PassKind::kAsNeeded && (is_later || is_last || i >= kTriesWithoutRows);
-      Extraction current = extract_somehow(unit, search.next(), with_rows ? choice.lost() * plan_.quads : 0);
+    while (tries_left_ > 0) {
+      const bool is_stuck = search_.at_least() || search_.is_stuck();
+      if (choice_.any() && is_stuck && tries_made_ > kTriesWithoutRows) break;
+      --tries_left_;
+      if (is_stuck) tries_left_ = 0;
+      const bool is_later = settings_.kind != PassKind::kFirst;
+      const bool with_rows =
+          settings_.kind != PassKind::kAsNeeded && (is_later || tries_left_ == 0 || tries_made_ >= kTriesWithoutRows);
+      ++tries_made_;
+      Extraction current = extract_somehow(search_.next(), with_rows ? choice_.lost() * plan_.quads : 0);
       result_.extracted_quads += current.count();
       result_.work += work_of(current);
-      const double before_rows = current.quads_before_rows;
-      if (choice.is_far(current)) {
-        choice.set_aside(std::move(current));
-        search.record(before_rows / choice.lost());
-        if (!is_last) continue;
-        if (choice.any()) break;
-        current = choice.nearest_set_aside();
-      }
-      const double extracted = current.count();
-      finish(current);
-      if (choice.lacks_only_soundness(current)) split_flawed(current);
-      choice.take(std::move(current), extracted);
-      if (is_last || choice.is_done() || is_in_vain(extracted, choice)) break;
-      search.record(before_rows / choice.lost());
+      if (!choice_.is_far(current)) return current;
+      search_.record(current.quads_before_rows / choice_.lost());
+      choice_.set_aside(std::move(current));
+      if (tries_left_ == 0 && !choice_.any()) return choice_.nearest_set_aside();
     }
-    return choice.best();
+    return std::nullopt;
+  }
+
+  /// Improves what a try gave, and decides whether there is to be another.
+  void settle(Extraction current) {
+    const double before_rows = current.quads_before_rows, extracted = current.count();
+    finish(current);
+    if (choice_.lacks_only_soundness(current)) split_flawed(current);
+    choice_.take(std::move(current), extracted);
+    if (choice_.is_done() || is_in_vain(extracted, choice_)) tries_left_ = 0;
+    else search_.record(before_rows / choice_.lost());
   }
 
   /// In faces of the working surface, of which there are more than three for a quad, unless counted curves ask for so many quads.
@@ -215,7 +244,7 @@ class ComponentRemesher {
     constexpr double kNearAsNeeded = 0.15, kLastResort = 2, kFar = 0.15, kRough = 0.5;
     const auto choice = [&](double tolerance, int enough_with_flaws, double far) {
       return ExtractionChoice(plan_.quads, tolerance, enough_with_flaws, far,
-                              [&](const QuadMesh& quads) { return mean_distance_in_edges(quads, *plan_.index, context_.in_stage("improve", 0.97, 0.97)); });
+                              [&](const QuadMesh& quads) { return mean_distance_in_edges(quads, *plan_.index, context_->in_stage("improve", 0.97, 0.97)); });
     };
     if (settings_.is_rough) return choice(kRough, 1, kRough);
     if (settings_.kind == PassKind::kFirst) return choice(count_tolerance(), 2, kFar);
@@ -239,7 +268,7 @@ class ComponentRemesher {
 
   void finish(Extraction& extraction) {
     if (options_.improve) improve(extraction);
-    finishing().make_mirrorable(extraction.mesh, context_.in_stage("improve", 0.97, 0.97));
+    finishing().make_mirrorable(extraction.mesh, context_->in_stage("improve", 0.97, 0.97));
     extraction.missed = missed_counts(plan_.features, extraction.mesh);
     settle_hard_guides(extraction);
   }
@@ -247,8 +276,8 @@ class ComponentRemesher {
   /// Splits a few sides rather than settling for a number farther from the one asked for.
   void split_flawed(Extraction& extraction) {
     if (!plan_.guides.empty()) return;
-    const RunContext context = context_.in_stage("improve", 0.97, 0.97);
-    extraction.repairs.split_sides += clock_.measure("improve", [&] { return finishing().split_flawed(extraction.mesh, context); });
+    const RunContext context = context_->in_stage("improve", 0.97, 0.97);
+    extraction.repairs.split_sides += clock_->measure("improve", [&] { return finishing().split_flawed(extraction.mesh, context); });
     extraction.flawed = static_cast<int>(finishing().flawed(extraction.mesh, context.threads).size());
   }
 
@@ -268,8 +297,8 @@ class ComponentRemesher {
   }
 
   /// \param wanted  number of quads to be met by rows; 0: as many as come out
-  Extraction extract_somehow(const FrameField& unit, double asked, double wanted) {
-    const auto extracted = [&](Attempt attempt) { return extract(unit, asked, wanted, attempt); };
+  Extraction extract_somehow(double asked, double wanted) {
+    const auto extracted = [&](Attempt attempt) { return extract(asked, wanted, attempt); };
     return extract_by_any_means(extracted, result_.repairs, result_.warnings);
   }
 
@@ -283,8 +312,8 @@ class ComponentRemesher {
   }
 
   /// Frames for a number of quads. Where that only scales them, they are solved for once.
-  FrameField sized_frames(const FrameField& unit, double asked) {
-    return clock_.measure("sizing", [&] {
+  FrameField sized_frames(double asked) {
+    return clock_->measure("sizing", [&] {
       if (!sized_.du.empty() && quads_only_scale(surface_)) {
         scale_to_quads(surface_.mesh, asked, sized_);
         return sized_;
@@ -296,42 +325,42 @@ class ComponentRemesher {
       o.curl_weight = std::max(settings_.curl_weight, fidelity);
       o.direction_weight = direction_weight_;
       o.stretch = stretch_;
-      sized_ = apply_sizing(surface_, unit, asked, o, context_.in_stage("sizing", 0.3, 0.4)).field;
+      sized_ = apply_sizing(surface_, unit_, asked, o, context_->in_stage("sizing", 0.3, 0.4)).field;
       return sized_;
     });
   }
 
-  Extraction extract(const FrameField& unit, double asked, double wanted, Attempt attempt) {
-    const FrameField frames = sized_frames(unit, asked);
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(frames, surface_, "sizing"));
-    const PeriodicField psi = clock_.measure("periodic field", [&] {
+  Extraction extract(double asked, double wanted, Attempt attempt) {
+    const FrameField frames = sized_frames(asked);
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(frames, surface_, "sizing"));
+    const PeriodicField psi = clock_->measure("periodic field", [&] {
       PeriodicFieldOptions o;
       o.solver = options_.solver;
       o.strip_rows = options_.narrow_quads;
-      return solve_periodic_field(surface_, frames, o, context_.in_stage("periodic field", 0.4, 0.55));
+      return solve_periodic_field(surface_, frames, o, context_->in_stage("periodic field", 0.4, 0.55));
     });
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(psi, surface_));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(psi, surface_));
     Extraction out;
-    out.param = clock_.measure("spanning parameterization", [&] {
+    out.param = clock_->measure("spanning parameterization", [&] {
       SpanningOptions o;
       o.strip_rows = options_.narrow_quads;
       o.cancel_dislocations = attempt == Attempt::kFull;
-      return build_spanning_parameterization(surface_, frames, psi, o, context_.in_stage("spanning parameterization", 0.55, 0.7));
+      return build_spanning_parameterization(surface_, frames, psi, o, context_->in_stage("spanning parameterization", 0.55, 0.7));
     });
     if (attempt == Attempt::kPatchesOnly)
       std::fill(out.param.is_regular.begin(), out.param.is_regular.end(), 0);
     else
       require_sound("spanning parameterization", violations_of(out.param, surface_, frames));
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.param, surface_));
-    RegularQuads regular = clock_.measure("regular quads", [&] {
-      return extract_regular_quads(surface_, frames, out.param, context_.in_stage("regular quads", 0.7, 0.76));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(out.param, surface_));
+    RegularQuads regular = clock_->measure("regular quads", [&] {
+      return extract_regular_quads(surface_, frames, out.param, context_->in_stage("regular quads", 0.7, 0.76));
     });
     require_sound("regular quads", violations_of(regular));
-    SingularPatches singular = clock_.measure("singular patches", [&] {
-      return fill_singular_patches(surface_, frames, out.param, regular, PatchOptions{}, context_.in_stage("singular patches", 0.76, 0.83));
+    SingularPatches singular = clock_->measure("singular patches", [&] {
+      return fill_singular_patches(surface_, frames, out.param, regular, PatchOptions{}, context_->in_stage("singular patches", 0.76, 0.83));
     });
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(regular, singular));
-    out.mesh = clock_.measure("assemble", [&] {
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(regular, singular));
+    out.mesh = clock_->measure("assemble", [&] {
       QuadComplex complex = assemble_quads(surface_, regular, singular);
       require_sound("assemble", violations_of(complex));
       if (topology_of(complex) != topology_)
@@ -346,7 +375,7 @@ class ComponentRemesher {
       out.quads_before_rows = complex.quad_count();
       if (is_in_reach(complex.quad_count(), wanted) && plan_.guides.empty() && wishes_.most_stretch <= 1)
         out.repairs.fitted_rows = fit_quad_count(complex, wanted, kShareOfTolerance * count_tolerance() * wanted, counted,
-                                                 context_.in_stage("assemble", 0.83, 0.83));
+                                                 context_->in_stage("assemble", 0.83, 0.83));
       out.repairs.opened_straight_quads = open_straight_quads(complex);
       open_seams(complex, plan_.curve_planes);
       QuadMesh mesh = to_quad_mesh(complex);
@@ -354,7 +383,7 @@ class ComponentRemesher {
       return mesh;
     });
     require_valid("assemble", out.mesh, topology_);
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(out.mesh, "assemble"));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(out.mesh, "assemble"));
     out.patch_count = static_cast<int>(singular.patches.size());
     out.singular_area = singular.singular_area;
     for (const FilledPatch& p : singular.patches) {
@@ -379,20 +408,20 @@ class ComponentRemesher {
   }
 
   void improve(Extraction& extraction) {
-    const RunContext context = context_.in_stage("improve", 0.83, 0.97);
-    const ImproveReport report = clock_.measure("improve", [&] { return finishing().improve(extraction.mesh, context); });
+    const RunContext context = context_->in_stage("improve", 0.83, 0.97);
+    const ImproveReport report = clock_->measure("improve", [&] { return finishing().improve(extraction.mesh, context, std::exchange(sketch_, std::nullopt)); });
     extraction.repairs.mended_places += report.mended;
     extraction.repairs.poor_places += report.placed;
     extraction.repairs.released_tips += report.released_tips;
     extraction.repairs.restored_quads += report.restored_quads;
     extraction.flawed = report.flawed_after;
-    if (context_.on_snapshot) context_.on_snapshot(snapshot_of(extraction.mesh, "improve"));
+    if (context_->on_snapshot) context_->on_snapshot(snapshot_of(extraction.mesh, "improve"));
   }
 
   void settle_hard_guides(Extraction& extraction) {
     if (plan_.guides.empty()) return;
-    const RunContext context = context_.in_stage("hard guides", 0.97, 0.97);
-    clock_.measure("hard guides", [&] {
+    const RunContext context = context_->in_stage("hard guides", 0.97, 0.97);
+    clock_->measure("hard guides", [&] {
       GuidedQuads guided{std::move(extraction.mesh), plan_.features, {}, {}, extraction.flawed};
       settle_guides(guided, plan_, guides_, finishing().options(), options_, *whole_, context);
       extraction.mesh = std::move(guided.mesh);
@@ -413,27 +442,57 @@ class ComponentRemesher {
   const HardGuides& guides_;
   const RemeshOptions& options_;
   std::optional<Finishing> finishing_;
-  const PassSettings& settings_;
-  StageClock& clock_;
-  const RunContext& context_;
+  const PassSettings settings_;
+  StageClock* clock_ = nullptr;
+  const RunContext* context_ = nullptr;
+  int tries_left_, tries_made_ = 0;
+  CountSearch search_;
+  ExtractionChoice choice_;
+  std::optional<Extraction> sketched_;  ///< the latest try, where it is still to be settled
+  std::optional<Improved> sketch_;      ///< what improving it once made of it
   WorkingSurface surface_;
+  FrameField unit_;
   FrameField sized_;  ///< of the latest try
   std::vector<double> direction_weight_;  ///< see SizingOptions
   std::vector<Eigen::Matrix3d> stretch_;
   ComponentResult result_;
 };
 
-}  // namespace
+ComponentPass::ComponentPass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
+                             const RemeshOptions& options, const PassSettings& settings)
+    : stages_(std::make_unique<Stages>(plan, &whole, wishes, guides, options, settings)) {}
+
+ComponentPass::ComponentPass(ComponentPass&&) noexcept = default;
+ComponentPass& ComponentPass::operator=(ComponentPass&&) noexcept = default;
+ComponentPass::~ComponentPass() = default;
+
+const QuadMesh& ComponentPass::sketch(StageClock& clock, const RunContext& context) {
+  stages_->set_run(clock, context);
+  return stages_->sketch();
+}
+
+ComponentResult ComponentPass::complete(StageClock& clock, const RunContext& context) {
+  stages_->set_run(clock, context);
+  return stages_->complete();
+}
+
+ComponentPreview ComponentPass::preview(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes,
+                                        const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
+                                        StageClock& clock, const RunContext& context) {
+  Stages stages(plan, whole, wishes, guides, options, settings);
+  stages.set_run(clock, context);
+  return stages.preview();
+}
 
 ComponentResult run_pass(const ComponentPlan& plan, const SurfaceIndex& whole, const Wishes& wishes, const HardGuides& guides,
                          const RemeshOptions& options, const PassSettings& settings, StageClock& clock, const RunContext& context) {
-  return ComponentRemesher(plan, &whole, wishes, guides, options, settings, clock, context).run();
+  return ComponentPass(plan, whole, wishes, guides, options, settings).complete(clock, context);
 }
 
 ComponentPreview preview_pass(const ComponentPlan& plan, const SurfaceIndex* whole, const Wishes& wishes,
                               const HardGuides& guides, const RemeshOptions& options, const PassSettings& settings,
                               StageClock& clock, const RunContext& context) {
-  return ComponentRemesher(plan, whole, wishes, guides, options, settings, clock, context).preview();
+  return ComponentPass::preview(plan, whole, wishes, guides, options, settings, clock, context);
 }
 
 }  // namespace hybrid_quad

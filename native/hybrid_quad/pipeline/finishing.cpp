@@ -1,5 +1,7 @@
 #include "hybrid_quad/pipeline/finishing.h"
 
+#include <utility>
+
 #include <algorithm>
 #include <cmath>
 
@@ -72,8 +74,12 @@ Finishing::Finishing(const ComponentPlan& plan, const SurfaceIndex& whole, const
   }
 }
 
-ImproveReport Finishing::improve(QuadMesh& mesh, const RunContext& context) const {
-  return improve_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_);
+Improved Finishing::improve_once(const QuadMesh& mesh, const RunContext& context) const {
+  return hybrid_quad::improve_once(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_);
+}
+
+ImproveReport Finishing::improve(QuadMesh& mesh, const RunContext& context, std::optional<Improved> first) const {
+  return improve_quads(mesh, plan_.mesh, plan_.features, *plan_.index, improve_, context, &whole_, std::move(first));
 }
 
 void Finishing::make_mirrorable(QuadMesh& mesh, const RunContext& context) const {

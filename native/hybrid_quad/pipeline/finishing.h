@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "hybrid_quad/improve/improve.h"
 #include "hybrid_quad/pipeline/remesh.h"
 #include "hybrid_quad/pipeline/size_plan.h"
@@ -25,7 +27,9 @@ class Finishing {
   Finishing& operator=(const Finishing&) = delete;
 
   const ImproveOptions& options() const { return improve_; }
-  ImproveReport improve(QuadMesh& mesh, const RunContext& context) const;
+  Improved improve_once(const QuadMesh& mesh, const RunContext& context) const;
+  /// \param first  what improve_once made of the same quads, if it did
+  ImproveReport improve(QuadMesh& mesh, const RunContext& context, std::optional<Improved> first = std::nullopt) const;
   /// The last resort for flawed quads (split_flawed_quads). \returns sides split
   int split_flawed(QuadMesh& mesh, const RunContext& context) const;
   /// What is left to do where no side to split helps (refine_flawed_quads). \returns places refined

@@ -27,15 +27,18 @@ struct Trial {
   explicit Trial(ComponentPlan plan) : pass{std::move(plan), {}} {}
 
   FirstPass pass;
-  double distance = kFailed;  ///< mean_distance_in_edges()
+  std::optional<ComponentPass> begun;  ///< where there is only a sketch so far
+  double shape = -1;                   ///< mean scaled Jacobian
+  double quads = 0;
+  double distance = kFailed;           ///< mean_distance_in_edges()
   std::optional<InternalError> error;  ///< instead of a result
   double curl_weight = PassSettings{}.curl_weight;
   double most_quads = 1.1;  ///< times the number
 
   /// A hundredth of an edge off the surface weighs as much as this many hundredths of the scaled Jacobian.
   static constexpr double kDistanceInShapes = 4;
-  double score() const { return mean_shape(pass.result.mesh) - kDistanceInShapes * distance; }
-  double quads_for_each_wanted() const { return static_cast<double>(pass.result.mesh.quads.size()) / pass.plan.quads; }
+  double score() const { return shape - kDistanceInShapes * distance; }
+  double quads_for_each_wanted() const { return quads / pass.plan.quads; }
   bool has_far_too_many() const { return quads_for_each_wanted() > most_quads; }
 };
 
@@ -64,7 +67,8 @@ class FirstPasses {
               const RemeshOptions& options, StageClock& clock, ComponentResult& broken)
       : planned_(planned), whole_(whole), wishes_(wishes), guides_(guides), options_(options), clock_(clock), broken_(broken) {}
 
-  /// Where very many features give way, only one pass without these is made, unless its quads have left the surface.
+  /// The best by their sketches, completed. Where very many features give way, only one pass without these is made, unless its quads have left
+  /// the surface.
   std::optional<Trial> with_fewer_or_all_features(const RunContext& context) {
     constexpr double kNear = 0.02;  // edges
     constexpr double kBetter = 0.02;  // has to be what goes without more features
@@ -75,14 +79,17 @@ class FirstPasses {
     const int count = static_cast<int>(trials.size());
     if (count == 1) return std::nullopt;
     int made = 0;
+    const RunContext first = context.in_stage(context.stage, 0, kSketches), rest = context.in_stage(context.stage, kSketches, 1);
     if (very_many) {
-      make_alone(trials[0], context.in_stage(context.stage, 0, 1.0 / count));
-      if (trials[0].distance <= kNear) return std::move(trials[0]);
+      make_alone(trials[0], &FirstPasses::sketch, first.in_stage(context.stage, 0, 1.0 / count));
       made = 1;
     }
-    make_side_by_side(trials, made, context);
-    Trial* best = best_of(trials, kBetter);
-    return best ? std::optional(std::move(*best)) : std::nullopt;
+    if (!very_many || trials[0].distance > kNear) make_side_by_side(trials, made, &FirstPasses::sketch, first);
+    while (Trial* best = best_of(trials, kBetter)) {
+      make_alone(*best, &FirstPasses::complete, rest);
+      if (!best->error) return std::move(*best);
+    }
+    return std::nullopt;
   }
 
   /// \param first  the pass so far, if there is one
@@ -93,10 +100,10 @@ class FirstPasses {
     if (!has_thin_parts && !is_wire(*planned_.index, planned_.length, context)) return first;
     if (!first) {
       first.emplace(planned_);
-      make_alone(*first, context.in_stage(context.stage, 0, 0.5));
+      make_alone(*first, &FirstPasses::complete, context.in_stage(context.stage, 0, 0.5));
     }
     double farthest = largest_distance_in_edges(*first, context.in_stage("quality", 0.5, 0.5));
-    const double shape = first->error ? -1 : mean_shape(first->pass.result.mesh);
+    const double shape = first->shape;
     if (farthest <= kFar && shape >= kEven && first->quads_for_each_wanted() <= kHeld) return first;
     const ComponentPlan plan = first->pass.plan;
     const ThinTubes tubes = thin_tubes(*plan.index, plan.length, context);
@@ -113,6 +120,9 @@ class FirstPasses {
   }
 
  private:
+  using Make = void (FirstPasses::*)(Trial&, StageClock&, const RunContext&) const;
+
+  static constexpr double kSketches = 0.4;  ///< of the time
   static constexpr double kHeld = 1.8;  ///< times the number: where features hold so many quads, parts have no room for more
   static constexpr double kFar = 1.25;  ///< edges: parts are lost
   static constexpr double kFirm =
@@ -156,7 +166,7 @@ class FirstPasses {
   /// \param farthest  of the one so far, in edges; gets that of the best  \returns whether it is another
   bool take_nearer(Trial& so_far, double& farthest, std::vector<Trial> others, const RunContext& context) {
     constexpr double kNearer = 0.8;
-    make_side_by_side(others, 0, context);
+    make_side_by_side(others, 0, &FirstPasses::complete, context);
     const double enough = farthest > kFar ? kNearer * farthest : kFar;
     const auto distance = [&](const Trial& trial) { return largest_distance_in_edges(trial, context.in_stage("quality", 1, 1)); };
     std::vector<Trial> trials;
@@ -178,19 +188,19 @@ class FirstPasses {
     return trial.error ? kFailed : farthest_from_quads(planned_.mesh, trial.pass.result.mesh, context).edges;
   }
 
-  /// \param made  so many have been already
-  void make_side_by_side(std::vector<Trial>& trials, int made, const RunContext& context) {
+  /// \param made  so many have been already  \param how  sketch or complete
+  void make_side_by_side(std::vector<Trial>& trials, int made, Make how, const RunContext& context) {
     const int count = static_cast<int>(trials.size()), left = count - made;
     std::vector<StageClock> clocks(left);
     CommonProgress progress(context, std::vector<double>(left, 1.0 / left), static_cast<double>(made) / count, 1);
     side_by_side(left, context,
-                 [&](int i, const RunContext& each) { make(trials[made + i], clocks[i], progress.context_of(i, each)); });
+                 [&](int i, const RunContext& each) { (this->*how)(trials[made + i], clocks[i], progress.context_of(i, each)); });
     for (const StageClock& one : clocks) clock_.add(one);
     for (int i = made; i < count; ++i) note(trials[i]);
   }
 
-  void make_alone(Trial& trial, const RunContext& context) {
-    make(trial, clock_, context);
+  void make_alone(Trial& trial, Make how, const RunContext& context) {
+    (this->*how)(trial, clock_, context);
     note(trial);
   }
 
@@ -198,15 +208,38 @@ class FirstPasses {
     if (trial.error) record_broken_promise(*trial.error, broken_.repairs, broken_.warnings);
   }
 
-  void make(Trial& trial, StageClock& clock, const RunContext& context) const {
+  ComponentPass pass_of(const Trial& trial) const {
     PassSettings settings;
     settings.curl_weight = trial.curl_weight;
     settings.is_doubtful = trial.pass.plan.given_way < planned_.given_way;
+    return {trial.pass.plan, whole_, wishes_, guides_, options_, settings};
+  }
+
+  /// \pre the trial does not move before it is completed
+  void sketch(Trial& trial, StageClock& clock, const RunContext& context) const {
+    attempt(trial, context, [&]() -> const QuadMesh& { return trial.begun.emplace(pass_of(trial)).sketch(clock, context); });
+  }
+
+  void complete(Trial& trial, StageClock& clock, const RunContext& context) const {
+    attempt(trial, context, [&]() -> const QuadMesh& {
+      if (!trial.begun) trial.begun.emplace(pass_of(trial));
+      trial.pass.result = trial.begun->complete(clock, context);
+      trial.begun.reset();
+      return trial.pass.result.mesh;
+    });
+  }
+
+  /// Measures the quads that `make` gives.
+  template <class MakeQuads>
+  void attempt(Trial& trial, const RunContext& context, const MakeQuads& make) const {
     try {
-      trial.pass.result = run_pass(trial.pass.plan, whole_, wishes_, guides_, options_, settings, clock, context);
-      trial.distance = mean_distance_in_edges(trial.pass.result.mesh, *planned_.index, context.in_stage("quality", 1, 1));
+      const QuadMesh& quads = make();
+      trial.shape = mean_shape(quads);
+      trial.quads = static_cast<double>(quads.quads.size());
+      trial.distance = mean_distance_in_edges(quads, *planned_.index, context.in_stage("quality", 1, 1));
     } catch (const InternalError& error) {
       trial.error = error;
+      trial.shape = -1;
       trial.distance = kFailed;
     }
   }
