@@ -177,27 +177,36 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   return best;
 }
 
-/// Of what is smaller than a few quads, features by angle are kept where no more quads than wanted can follow them: for what they cost more,
-/// the rest of the surface pays (docs/decisions/0056).
-/// \returns none where it has no features that may give way
-std::optional<ComponentResult> remesh_speck(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
-                                            const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
-                                            const RunContext& context) {
-  constexpr double kMost = 1.2;  // times the number
+/// Where quads are scarce, features by angle are kept if hardly more quads than wanted can follow them: on specks what they cost more the rest of
+/// the surface would pay, and between handles they hold a multiple (docs/decisions/0056).
+/// \returns none where there are no features that may give way
+std::optional<ComponentResult> remesh_scarce(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
+                                             const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
+                                             const RunContext& context) {
+  constexpr double kMost = 1.2, kMostInSketch = 1.5;  // times the number
   const ComponentPlan without = without_features_by_angle(planned, options.symmetry.planes, context);
   if (without.given_way == planned.given_way) return std::nullopt;
-  const auto remeshed = [&](const ComponentPlan& plan) {
-    return remesh_in_passes(plan, std::nullopt, wanted, whole, wishes, guides, options, budget, clock, context);
-  };
-  ComponentResult best = remeshed(planned);
-  const double most = kMost * std::max<double>(wanted, fewest_quads(planned.mesh));
-  if (best.flawed_quads == 0 && static_cast<double>(best.mesh.quads.size()) <= most) return best;
-  ComponentResult fewer = remeshed(without);
+  const double number = std::max<double>(wanted, fewest_quads(planned.mesh));
+  const auto is_held = [&](const QuadMesh& quads, double most) { return static_cast<double>(quads.quads.size()) > most * number; };
+  const RunContext first = context.in_stage(context.stage, 0, 0.4);
+  ComponentResult best;
+  bool any = false;
+  try {
+    ComponentPass pass(planned, whole, wishes, guides, options, PassSettings{});
+    if (!is_held(pass.sketch(clock, first), kMostInSketch)) {
+      best = remesh_in_passes(planned, pass.complete(clock, first), wanted, whole, wishes, guides, options, budget, clock, first);
+      any = true;
+      if (best.flawed_quads == 0 && !is_held(best.mesh, kMost)) return best;
+    }
+  } catch (const InternalError& error) {
+    record_broken_promise(error, best.repairs, best.warnings);
+  }
+  ComponentResult fewer = remesh_in_passes(without, std::nullopt, wanted, whole, wishes, guides, options, budget, clock,
+                                           context.in_stage(context.stage, 0.4, 1));
+  if (any && (best.flawed_quads < fewer.flawed_quads || best.mesh.quads.size() <= fewer.mesh.quads.size())) std::swap(best, fewer);
   fewer.passes += best.passes;
-  best.passes = fewer.passes;
-  if (fewer.flawed_quads <= best.flawed_quads && fewer.mesh.quads.size() < best.mesh.quads.size()) std::swap(best, fewer);
-  keep_broken_promises(fewer, best);
-  return best;
+  keep_broken_promises(best, fewer);
+  return fewer;
 }
 
 /// Further passes with corners where the loops of `best` are farthest from their guides; one that has them nearer and is as
@@ -274,9 +283,9 @@ ComponentResult remesh_component(const ComponentPlan& planned, double wanted, co
                                  const RunContext& context) {
   const bool is_extractable = !extractable(planned, std::max<double>(wanted, fewest_quads(planned.mesh))).are_few;
   std::optional<FirstPass> first;
-  if (planned.is_speck && options.is_by_count() && planned.guides.empty())
-    if (std::optional<ComponentResult> speck = remesh_speck(planned, wanted, whole, wishes, guides, options, budget, clock, context))
-      return *std::move(speck);
+  if (planned.is_scarce && options.is_by_count() && planned.guides.empty())
+    if (std::optional<ComponentResult> scarce = remesh_scarce(planned, wanted, whole, wishes, guides, options, budget, clock, context))
+      return *std::move(scarce);
   ComponentResult broken;
   if (is_extractable) first = first_pass_by_trial(planned, whole, wishes, guides, options, clock, context, broken);
   const ComponentPlan& plan = first ? first->plan : planned;

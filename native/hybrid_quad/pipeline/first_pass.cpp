@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "hybrid_quad/base/parallel.h"
@@ -68,7 +69,7 @@ class FirstPasses {
       : planned_(planned), whole_(whole), wishes_(wishes), guides_(guides), options_(options), clock_(clock), broken_(broken) {}
 
   /// The best by their sketches, completed. Where very many features give way, only one pass without these is made, unless its quads have left
-  /// the surface.
+  /// the surface; where even the best has far more quads than wanted, one without any features by angle too.
   std::optional<Trial> with_fewer_or_all_features(const RunContext& context) {
     constexpr double kNear = 0.02;  // edges
     constexpr double kBetter = 0.02;  // has to be what goes without more features
@@ -85,6 +86,11 @@ class FirstPasses {
       made = 1;
     }
     if (!very_many || trials[0].distance > kNear) make_side_by_side(trials, made, &FirstPasses::sketch, first);
+    const std::unique_ptr<Trial> bare = without_features(best_of(trials, kBetter), first.in_stage(context.stage, 1, 1));
+    if (bare) {
+      make_alone(*bare, &FirstPasses::complete, rest);
+      if (!bare->error) return std::move(*bare);
+    }
     while (Trial* best = best_of(trials, kBetter)) {
       make_alone(*best, &FirstPasses::complete, rest);
       if (!best->error) return std::move(*best);
@@ -120,6 +126,18 @@ class FirstPasses {
   }
 
  private:
+  /// Where features by angle hold far more quads than there are to be, a sketch without any, if that is far nearer to the number.
+  /// \param best  with features; null: none has a result
+  std::unique_ptr<Trial> without_features(const Trial* best, const RunContext& context) {
+    constexpr double kHeldByFeatures = 1.5, kFewer = 0.75;
+    if (best == nullptr || !options_.is_by_count() || best->quads_for_each_wanted() < kHeldByFeatures) return nullptr;
+    auto bare = std::make_unique<Trial>(without_features_by_angle(planned_, options_.symmetry.planes, context));
+    if (bare->pass.plan.given_way <= best->pass.plan.given_way) return nullptr;
+    make_alone(*bare, &FirstPasses::sketch, context);
+    if (bare->error || bare->quads_for_each_wanted() > kFewer * best->quads_for_each_wanted()) return nullptr;
+    return bare;
+  }
+
   using Make = void (FirstPasses::*)(Trial&, StageClock&, const RunContext&) const;
 
   static constexpr double kSketches = 0.4;  ///< of the time

@@ -174,7 +174,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
                              const RemeshOptions& options, const RunContext& context) {
   // Lengths and thickness are known at vertices: these must not be too far apart. Against the size of the component they
   // are near enough, however small the quads: a few ten thousand triangles tell.
-  constexpr double kLongestEdge = 1.25, kLongestWhereAsked = 0.8, kNearEnough = 0.01, kTiny = 0.7, kTinyRatio = 0.8;
+  constexpr double kLongestEdge = 1.25, kLongestWhereAsked = 0.8, kNearEnough = 0.01, kScarce = 0.7, kScarceRatio = 0.8;
   constexpr double kPieces = 2e4, kPiecesPerQuad = 4;  // most edges that halved ones may become
   // Halves of a needle are three needles, so that a surface thin as a hair becomes far more pieces than its edges do.
   constexpr double kSplitsPerPiece = 2;
@@ -212,8 +212,8 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   plan.unlimited.assign(plan.mesh.vertex_count(), plan.length);
   for (std::size_t v = 0; v < plan.density.size(); ++v) plan.unlimited[v] = plan.length / plan.density[v];
   // What is smaller than a quad is coarse anyhow: its own features may ask for little more than it takes to be a mesh.
-  plan.is_speck = plan.length < kTiny * length;
-  plan.least_ratio = plan.thin_ratio = plan.is_speck ? kTinyRatio : FeatureSizeOptions{}.least_ratio;
+  plan.is_scarce = plan.length < kScarce * length;
+  plan.least_ratio = plan.thin_ratio = plan.is_scarce ? kScarceRatio : FeatureSizeOptions{}.least_ratio;
   plan_lengths(plan, options.symmetry.planes, context);
   return plan;
 }

@@ -38,7 +38,7 @@ struct ComponentPlan {
   ThinStretch thin_stretch;     ///< of quads on thin parts
   int part = -1;                ///< which of a run's components this is the plan for, scaled at most; -1: changed since
   double sharp_angle = 0;       ///< degrees above which edges by angle were looked at; 0: none were
-  bool is_speck = false;         ///< smaller than a few quads of the asked length, and with shorter edges than asked
+  bool is_scarce = false;       ///< half as many quads as its topology calls for would have the asked length: so small, or with so many handles
   bool was_crowded = false;     ///< features by angle gave way to the number of quads
   std::shared_ptr<const ComponentPlan>
       with_all;  ///< the plan before they did, where quads that follow them all are not beyond reach; null: else
