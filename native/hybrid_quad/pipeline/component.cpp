@@ -177,13 +177,14 @@ ComponentResult remesh_in_passes(const ComponentPlan& planned, std::optional<Com
   return best;
 }
 
-/// Where quads are scarce, features by angle are kept if hardly more quads than wanted can follow them: on specks what they cost more the rest of
+/// Where quads are scarce, features by angle are kept if not far more quads than wanted follow them: on specks what they cost more the rest of
 /// the surface would pay, and between handles they hold a multiple (docs/decisions/0056).
 /// \returns none where there are no features that may give way
 std::optional<ComponentResult> remesh_scarce(const ComponentPlan& planned, double wanted, const SurfaceIndex& whole, const Wishes& wishes,
                                              const HardGuides& guides, const RemeshOptions& options, WorkBudget& budget, StageClock& clock,
                                              const RunContext& context) {
-  constexpr double kMost = 1.2, kMostInSketch = 1.5;  // times the number
+  constexpr double kMost = 1.2, kMostInSketch = 2;  // times the number
+  constexpr double kSpeck = 16;  // quads: two passes take next to no time
   const ComponentPlan without = without_features_by_angle(planned, options.symmetry.planes, context);
   if (without.given_way == planned.given_way) return std::nullopt;
   const double number = std::max<double>(wanted, fewest_quads(planned.mesh));
@@ -196,7 +197,7 @@ std::optional<ComponentResult> remesh_scarce(const ComponentPlan& planned, doubl
     if (!is_held(pass.sketch(clock, first), kMostInSketch)) {
       best = remesh_in_passes(planned, pass.complete(clock, first), wanted, whole, wishes, guides, options, budget, clock, first);
       any = true;
-      if (best.flawed_quads == 0 && !is_held(best.mesh, kMost)) return best;
+      if (planned.quads > kSpeck || (best.flawed_quads == 0 && !is_held(best.mesh, kMost))) return best;
     }
   } catch (const InternalError& error) {
     record_broken_promise(error, best.repairs, best.warnings);
