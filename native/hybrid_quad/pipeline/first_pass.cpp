@@ -68,7 +68,7 @@ class FirstPasses {
               const RemeshOptions& options, StageClock& clock, ComponentResult& broken)
       : planned_(planned), whole_(whole), wishes_(wishes), guides_(guides), options_(options), clock_(clock), broken_(broken) {}
 
-  /// The best by their sketches, completed. Where very many features give way, only one pass without these is made, unless its quads have left
+  /// The best of those that are good by their sketches, completed. Where very many features give way, only one pass without these is made, unless its quads have left
   /// the surface; where even the best has far more quads than wanted, one without any features by angle too.
   std::optional<Trial> with_fewer_or_all_features(const RunContext& context) {
     constexpr double kNear = 0.02;  // edges
@@ -79,21 +79,24 @@ class FirstPasses {
       trials.emplace_back(std::move(plan));
     const int count = static_cast<int>(trials.size());
     if (count == 1) return std::nullopt;
-    int made = 0;
     const RunContext first = context.in_stage(context.stage, 0, kSketches), rest = context.in_stage(context.stage, kSketches, 1);
     if (very_many) {
       make_alone(trials[0], &FirstPasses::sketch, first.in_stage(context.stage, 0, 1.0 / count));
-      made = 1;
+      if (trials[0].distance > kNear) make_side_by_side(all_but(trials, 1), &FirstPasses::sketch, first.in_stage(context.stage, 1.0 / count, 1));
+    } else {
+      make_side_by_side(all_but(trials, 0), &FirstPasses::sketch, first);
     }
-    if (!very_many || trials[0].distance > kNear) make_side_by_side(trials, made, &FirstPasses::sketch, first);
     const std::unique_ptr<Trial> bare = without_features(best_of(trials, kBetter), first.in_stage(context.stage, 1, 1));
     if (bare) {
       make_alone(*bare, &FirstPasses::complete, rest);
       if (!bare->error) return std::move(*bare);
     }
     while (Trial* best = best_of(trials, kBetter)) {
-      make_alone(*best, &FirstPasses::complete, rest);
-      if (!best->error) return std::move(*best);
+      if (!best->begun) return std::move(*best);
+      std::vector<Trial*> good;
+      for (Trial& trial : trials)
+        if (trial.begun && trial.score() >= best->score() - doubt()) good.push_back(&trial);
+      make_side_by_side(good, &FirstPasses::complete, rest);
     }
     return std::nullopt;
   }
@@ -184,7 +187,7 @@ class FirstPasses {
   /// \param farthest  of the one so far, in edges; gets that of the best  \returns whether it is another
   bool take_nearer(Trial& so_far, double& farthest, std::vector<Trial> others, const RunContext& context) {
     constexpr double kNearer = 0.8;
-    make_side_by_side(others, 0, &FirstPasses::complete, context);
+    make_side_by_side(all_but(others, 0), &FirstPasses::complete, context);
     const double enough = farthest > kFar ? kNearer * farthest : kFar;
     const auto distance = [&](const Trial& trial) { return largest_distance_in_edges(trial, context.in_stage("quality", 1, 1)); };
     std::vector<Trial> trials;
@@ -206,15 +209,27 @@ class FirstPasses {
     return trial.error ? kFailed : farthest_from_quads(planned_.mesh, trial.pass.result.mesh, context).edges;
   }
 
-  /// \param made  so many have been already  \param how  sketch or complete
-  void make_side_by_side(std::vector<Trial>& trials, int made, Make how, const RunContext& context) {
-    const int count = static_cast<int>(trials.size()), left = count - made;
-    std::vector<StageClock> clocks(left);
-    CommonProgress progress(context, std::vector<double>(left, 1.0 / left), static_cast<double>(made) / count, 1);
-    side_by_side(left, context,
-                 [&](int i, const RunContext& each) { (this->*how)(trials[made + i], clocks[i], progress.context_of(i, each)); });
+  /// How much a score may change from a sketch to the whole pass: of few quads, which cost little, more.
+  double doubt() const {
+    constexpr double kFew = 1000, kOfFew = 0.15, kOfMany = 0.05;
+    return planned_.quads < kFew ? kOfFew : kOfMany;
+  }
+
+  static std::vector<Trial*> all_but(std::vector<Trial>& trials, int first) {
+    std::vector<Trial*> rest;
+    for (auto trial = trials.begin() + first; trial != trials.end(); ++trial) rest.push_back(&*trial);
+    return rest;
+  }
+
+  /// \param how  sketch or complete
+  void make_side_by_side(const std::vector<Trial*>& trials, Make how, const RunContext& context) {
+    const int count = static_cast<int>(trials.size());
+    std::vector<StageClock> clocks(count);
+    CommonProgress progress(context, std::vector<double>(count, 1.0 / count), 0, 1);
+    side_by_side(count, context,
+                 [&](int i, const RunContext& each) { (this->*how)(*trials[i], clocks[i], progress.context_of(i, each)); });
     for (const StageClock& one : clocks) clock_.add(one);
-    for (int i = made; i < count; ++i) note(trials[i]);
+    for (const Trial* trial : trials) note(*trial);
   }
 
   void make_alone(Trial& trial, Make how, const RunContext& context) {
