@@ -176,6 +176,7 @@ ImproveReport improve_quads(QuadMesh& quads, const TriangleMesh& input, const Fe
 int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const FeatureGraph& features, const SurfaceIndex& index,
                        const ImproveOptions& options, const QuadNumber& number, const RunContext& context,
                        const SurfaceIndex* whole) {
+  constexpr double kFarOff = 1.5;
   constexpr double kMostInOneGo = 0.25;  // of the quads: in between all are smoothed
   constexpr int kSweeps = 5;
   Workpiece piece = workpiece_of(quads, input, features, index, options);
@@ -188,7 +189,7 @@ int change_quad_number(QuadMesh& quads, const TriangleMesh& input, const Feature
   for (int now = before, last = -1; now != number.wanted && now != last;) {
     last = now;
     const int step = std::max(1, static_cast<int>(kMostInOneGo * now));
-    const QuadNumber next{std::clamp(number.wanted, now - step, now + step), number.lengths};
+    const QuadNumber next{std::clamp(number.wanted, now - step, now + step), number.lengths, now > kFarOff * number.wanted};
     take_out_quads(piece, smoother, measure, next, context);
     put_in_quads(piece, smoother, measure, next, context);
     now = piece.mesh.live_quads();

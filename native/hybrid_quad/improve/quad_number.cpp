@@ -90,7 +90,7 @@ class TakingOut {
   int run() {
     const int before = quads_;
     for (const double gain : {0.0, kAnyShape}) {
-      if (gain == 0 && quads_ > kFarOff * number_.wanted) continue;
+      if (gain == 0 && number_.is_far) continue;
       history_.forget_failures();
       while (quads_ > number_.wanted && (round_of_collapses(gain) > 0 || round_with_turns(gain) > 0)) {}
     }
@@ -98,7 +98,6 @@ class TakingOut {
   }
 
  private:
-  static constexpr double kFarOff = 1.2;  ///< times the number: shapes are made anew afterwards, and what keeps them takes most tries
   static constexpr int kEffort = 400;
   static constexpr int kWays = 4;  ///< to collapse a quad: two diagonals, alone and with what merges
   static constexpr SearchLimits kTurned{2, 30, -30, 400, 8, 40};
