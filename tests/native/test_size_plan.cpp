@@ -205,11 +205,11 @@ TEST(SizePlan, OfExactWishesWhatIsAFeatureBesidesStays) {
 }
 
 TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
-  const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1));
+  const TriangleMesh slab = test::box(12, Vector3(4, 4, 0.1)), block = test::box(12, Vector3(4, 4, 1));
   bool has_another_plan = false;
-  const auto features_for = [&](double quads, const MarkedEdges& marked) {
+  const auto features_of = [&](const TriangleMesh& box, double quads, const MarkedEdges& marked) {
     std::vector<ComponentPlan> plans{
-        plan_component(slab, std::sqrt(slab.total_area() / quads), marked, {}, Wishes{}, RemeshOptions{}, RunContext{})};
+        plan_component(box, std::sqrt(box.total_area() / quads), marked, {}, Wishes{}, RemeshOptions{}, RunContext{})};
     balance_plans(plans, quads, RunContext{});
     make_room_for_count(plans, quads, 0, RunContext{});
     EXPECT_EQ(violations_of(plans[0].features, plans[0].mesh), std::vector<std::string>{});
@@ -222,11 +222,13 @@ TEST(SizePlan, FeaturesGiveWayWhereThereAreNearlyAsManyAsQuads) {
     has_another_plan = plans[0].with_all != nullptr;
     return plans[0].features.curves.size();
   };
+  const auto features_for = [&](double quads, const MarkedEdges& marked) { return features_of(slab, quads, marked); };
   EXPECT_EQ(features_for(400, {}), 12u);
   EXPECT_FALSE(has_another_plan) << "none gave way";
   EXPECT_LT(features_for(16, {}), 12u);
   EXPECT_TRUE(has_another_plan) << "edges along all would be fewer than quads";
   EXPECT_LT(features_for(6, {}), 12u);
+  EXPECT_LT(features_of(block, 6, {}), 12u);
   EXPECT_FALSE(has_another_plan) << "and beyond reach of six";
   MarkedEdges all;
   const FeatureGraph features = detect_features(slab, FeatureOptions{}, RunContext{});
