@@ -204,8 +204,8 @@ std::optional<ComponentResult> remesh_scarce(const ComponentPlan& planned, doubl
   }
   ComponentResult fewer = remesh_in_passes(without, std::nullopt, wanted, whole, wishes, guides, options, budget, clock,
                                            context.in_stage(context.stage, 0.4, 1));
-  if (any && (best.flawed_quads < fewer.flawed_quads || best.mesh.quads.size() <= fewer.mesh.quads.size())) std::swap(best, fewer);
-  fewer.passes += best.passes;
+  if (any && (best.flawed_quads < fewer.flawed_quads || best.mesh.quads.size() <= fewer.mesh.quads.size()))
+    std::swap(best, fewer);
   keep_broken_promises(best, fewer);
   return fewer;
 }

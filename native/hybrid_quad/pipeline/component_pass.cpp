@@ -64,6 +64,7 @@ class ComponentPass::Stages {
   const QuadMesh& sketch() {
     begin();
     sketched_ = next_try();
+    if (!options_.improve) return sketched_->mesh;
     const RunContext context = context_->in_stage("improve", 0.83, 0.97);
     sketch_ = clock_->measure("improve", [&] { return finishing().improve_once(sketched_->mesh, context); });
     return sketch_->quads;

@@ -33,7 +33,7 @@ class ComponentPass {
   ComponentPass& operator=(ComponentPass&&) noexcept;
   ~ComponentPass();
 
-  /// The quads of its first try, improved once. \pre called once at most, before complete()
+  /// The quads of its first try, improved once if quads are to be improved. \pre called once at most, before complete()
   /// \throws InternalError as run_pass
   const QuadMesh& sketch(StageClock& clock, const RunContext& context);
   /// run_pass, from where the sketch left off if there was one. \pre called once
