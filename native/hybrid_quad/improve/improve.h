@@ -87,7 +87,7 @@ struct QuadNumber {
   int wanted = 0;
   /// #V of the input: edge lengths asked for. Quads that are small against them are taken out, those that are large are split.
   const std::vector<double>& lengths;
-  bool is_far = false;  ///< from the wanted one still, when this is met: shapes are made anew afterwards, and what keeps them takes most tries
+  bool is_on_the_way = false;  ///< far from the wanted one still, when this is met: shapes are made anew afterwards, and what keeps them takes most tries
 };
 
 /// Takes single quads out, or puts some in, until there are as many as wanted or no more can be without new flaws. Features, the

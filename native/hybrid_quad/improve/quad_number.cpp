@@ -90,7 +90,7 @@ class TakingOut {
   int run() {
     const int before = quads_;
     for (const double gain : {0.0, kAnyShape}) {
-      if (gain == 0 && number_.is_far) continue;
+      if (gain == 0 && number_.is_on_the_way) continue;
       history_.forget_failures();
       while (quads_ > number_.wanted && (round_of_collapses(gain) > 0 || round_with_turns(gain) > 0)) {}
     }

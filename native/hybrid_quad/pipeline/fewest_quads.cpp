@@ -7,6 +7,7 @@ namespace hybrid_quad {
 namespace {
 
 constexpr int kLeastEdgesOfLoop = 4;  // of a border
+constexpr double kSphere = 16, kHandle = 32, kHole = 8;  // quads
 
 /// Whether numbers of vertices and edges of a connected mesh allow so many quads with so many edges on the boundary.
 bool may_exist(int quads, int border, int euler) {
@@ -33,10 +34,15 @@ int fewest_quads(const TriangleMesh& component) {
 }
 
 double quads_for_topology(const TriangleMesh& mesh) {
-  constexpr double kSphere = 16, kHandle = 32, kHole = 8;
   const int loops = border_loops_of(mesh);
   const double handles = (2.0 - mesh.euler_characteristic() - loops) / 2;
   return (loops > 0 ? 0 : kSphere) + kHandle * handles + kHole * loops;
+}
+
+double least_to_plan(const TriangleMesh& mesh) {
+  constexpr double kEnough = 0.5;
+  const double called_for = quads_for_topology(mesh);
+  return called_for <= kSphere ? kEnough * called_for : called_for;
 }
 
 }  // namespace hybrid_quad

@@ -13,4 +13,7 @@ int fewest_quads(const TriangleMesh& component);
 /// How many it should have to be a mesh of good quads at all: some, and more for every handle and hole.
 double quads_for_topology(const TriangleMesh& mesh);
 
+/// A plan is for as many at the least: for half of quads_for_topology where the surface has no handles, as these, if small, are paid for by others.
+double least_to_plan(const TriangleMesh& mesh);
+
 }  // namespace hybrid_quad

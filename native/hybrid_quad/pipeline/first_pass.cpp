@@ -129,6 +129,8 @@ class FirstPasses {
   }
 
  private:
+  using Make = void (FirstPasses::*)(Trial&, StageClock&, const RunContext&) const;
+
   /// Where features by angle hold far more quads than there are to be, a sketch without any, if that is far nearer to the number.
   /// \param best  with features; null: none has a result
   std::unique_ptr<Trial> without_features(const Trial* best, const RunContext& context) {
@@ -140,8 +142,6 @@ class FirstPasses {
     if (bare->error || bare->quads_for_each_wanted() > kFewer * best->quads_for_each_wanted()) return nullptr;
     return bare;
   }
-
-  using Make = void (FirstPasses::*)(Trial&, StageClock&, const RunContext&) const;
 
   static constexpr double kSketches = 0.4;  ///< of the time
   static constexpr double kHeld = 1.8;  ///< times the number: where features hold so many quads, parts have no room for more

@@ -35,14 +35,6 @@ std::vector<int> guides_on_edges(const TriangleMesh& mesh, const BisectedMesh& f
   return found_guides;
 }
 
-/// As many as fit, or as the topology calls for if those are more; but half of these do for a speck without handles, for which others pay.
-/// \param fitting  of the asked length
-double planned_quads(const TriangleMesh& mesh, double fitting) {
-  constexpr double kWithoutHandles = 16, kEnough = 0.5;
-  const double called_for = quads_for_topology(mesh);
-  return std::max(fitting, called_for <= kWithoutHandles ? kEnough * called_for : called_for);
-}
-
 /// Half-edges of the given edges, both sides.
 std::vector<char> on_edges(const TriangleMesh& mesh, const std::vector<std::array<int, 2>>& edges) {
   std::set<std::array<int, 2>> given;
@@ -189,7 +181,7 @@ ComponentPlan plan_component(const TriangleMesh& mesh, double length, const Mark
   context.checkpoint();
   ComponentPlan plan;
   const double area = area_by_density(mesh, wishes.density);
-  plan.length = std::sqrt(area / planned_quads(mesh, area / (length * length)));
+  plan.length = std::sqrt(area / std::max(area / (length * length), least_to_plan(mesh)));
   const double most_density = wishes.density.empty() ? 1 : *std::max_element(wishes.density.begin(), wishes.density.end());
   const bool is_guided = std::any_of(marked.guides.begin(), marked.guides.end(), [](int set) { return set >= 0; });
   const double longest_edge = is_guided || !wishes.density.empty() ? kLongestWhereAsked : kLongestEdge;
