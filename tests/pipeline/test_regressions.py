@@ -26,6 +26,14 @@ def test_tips_that_let_go_are_counted():
     assert (report["flawed_quads"], report["repairs"]["released_tips"]) == (0, 1)
 
 
+@pytest.mark.parametrize("quads", [300, 700])
+def test_few_flawed_quads_are_split_before_all_is_remeshed_anew(quads):
+    case = load_case(FOLDER / "tips_that_let_go")
+    report = hybrid_quad.remesh(case.vertices, case.faces, quads=quads).report
+    assert (report["flawed_quads"], report["extra_passes"]) == (0, 0)
+    assert report["repairs"]["split_sides"] > 0
+
+
 def test_small_parts_leave_nothing_flawed_and_take_no_further_pass():
     case = load_case(FOLDER / "small_parts_shrink_to_points")
     report = hybrid_quad.remesh(case.vertices, case.faces, quads=2000).report
