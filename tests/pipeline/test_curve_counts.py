@@ -39,6 +39,20 @@ def test_two_edges_of_a_box(quads):
     assert result.report["curve_counts"] == [{"asked": n, "got": n, "reason": ""} for n in (6, 11)]
 
 
+@pytest.mark.parametrize("quads", [4, 8])
+@pytest.mark.parametrize("count", [10, 20, 40])
+def test_where_quads_are_scarce_counts_keep_their_features_or_give_way(quads, count):
+    vertices, faces = surfaces.box(1)
+    asked = [(_box_edge(vertices, 0), count)]
+    result = hybrid_quad.remesh(vertices, faces, quads=quads, sharp_angle=40.0, curve_counts=asked)
+    assert_sound(result, faces)
+    is_met = result.report["curve_counts"][0]["got"] == count
+    assert is_met == (_edges_along(result, vertices, 0) == count)
+    assert is_met or result.report["curve_counts"][0]["reason"]
+    assert result.report["features_given_way"] == 0
+    assert result.report["quads"] <= 10 * max(quads, result.report["fewest_quads"])
+
+
 def test_no_curves_are_as_none():
     vertices, faces = surfaces.box(5)
     plain = hybrid_quad.remesh(vertices, faces, quads=300)
